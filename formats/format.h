@@ -25,9 +25,10 @@
 #include "fabric/piece.h"
 #include "fem/beams.h"
 #include "fem/field_mesh.h"
-#include "fem/solved_deck.h"
+#include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/raster.h"
+#include "fem/solved_deck.h"
 #include "formats/language.h"
 #include "solid/gap_map.h"
 #include "yarn/body.h"
@@ -135,6 +136,7 @@ struct Companion {
 struct MeshFileOptions {
   std::string companion{};  // the name of the file beside (Descriptor::companion); empty: there is none
   OptionValues own{};       // of Descriptor::options
+  const fem::Forming* forming = nullptr;  // the step of --deck explicit; null: another one
   // Of a format that is a folder: opens another file in it ("constant/points"). What it gives outlives the
   // writer.
   std::function<Result<OutputFile*>(std::string_view name)> open_member{};
@@ -195,6 +197,7 @@ struct Descriptor {
   // Yarns as beams (`mesh --elements beam`).
   Result<WriteFacts> (*write_beams)(const fem::BeamModel& beams, OutputFile& output,
                                     const MeshFileOptions& options) = nullptr;
+  bool carries_forming = false;    // explicit decks (MeshFileOptions::forming), of solids and of beams
   bool carries_transport = false;  // decks of every Mesh::physics, not of elasticity alone
   // The largest order of meshes whose regions share no nodes (Mesh::joining) that the format holds, as
   // surfaces and as cohesive elements; 0: of none.
@@ -202,6 +205,7 @@ struct Descriptor {
   // The largest order of pore spaces (Mesh::patches) that the format holds; 0: of none.
   int order_of_pores = 0;
   bool is_of_pores = false;  // and of nothing else
+  bool has_layers = false;   // wedges along their walls (Mesh::layers), too
   // An output is a folder with a file of the same name in it, which the writer is given; and these folders
   // below it, in which its other files are ("constant/polyMesh"). None: it is a file.
   std::vector<std::string_view> folders{};

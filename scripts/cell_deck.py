@@ -10,6 +10,10 @@ import cell_cohesive
 from cell_elements import EDGES, PAIRS, frames, matrices, tetrahedron_shapes
 
 
+class ForeignElement(Exception):
+    """One that nothing is known of here."""
+
+
 class Parallelepiped:
     """A unit cell: a corner and three edges, of which the last is along z."""
 
@@ -26,7 +30,7 @@ def cell_of(rows):
 
 
 class Deck:
-    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps."""
+    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps. Raises ForeignElement."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -59,6 +63,9 @@ class Deck:
                 found = re.fullmatch(r"Physics: (\w+)", last)
                 if found:
                     self.physics = found[1]
+                found = re.fullmatch(r"Strength: (\w+) (.*)", last)
+                if found:  # of the material that it stands in
+                    options["STRENGTH"] = (found[1], [float(v) for v in found[2].split()])
                 continue
             if line.startswith("*"):
                 if keyword:
@@ -95,6 +102,8 @@ class Deck:
                 self._add_equations(rows)
             elif keyword == "MATERIAL":
                 material = self.materials.setdefault(options["NAME"], {})
+                if "STRENGTH" in options:
+                    material["strength"] = options["STRENGTH"]
             elif keyword == "ELASTIC":
                 values = [float(word) for row in rows for word in row if word]
                 if options.get("TYPE") == "TRACTION":
@@ -141,7 +150,7 @@ class Deck:
         names = self.element_sets.setdefault(options.get("ELSET", "All"), [])
         count = {"C3D4": 4, "C3D10": 10, "C3D8": 8, "COH3D6": 6}.get(options["TYPE"].upper().removeprefix("D"))
         if count is None:
-            return
+            raise ForeignElement(f"elements of type {options['TYPE']}")
         elements = self.wedges if count == 6 else self.elements
         words = [int(word) for row in rows for word in row if word]
         for k in range(0, len(words), count + 1):

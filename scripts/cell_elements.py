@@ -212,9 +212,15 @@ class Cell:
     def stiffness(self):
         """Work of each driver's displacements against every driver's forces, and against those of one degree with all
         drivers held: errs by the product of both errors only."""
-        solved = self.solve(-sum(kind.gather(kind.given()) for kind in self.kinds))
-        work = sum(kind.work(solved) for kind in self.kinds)
+        self.solved = self.solve(-sum(kind.gather(kind.given()) for kind in self.kinds))
+        work = sum(kind.work(self.solved) for kind in self.kinds)
         return work[:, :-1], work[:, -1]
+
+    def displacements(self):
+        """Of every node, where each driver is 1 (nodes x directions x drivers); after `stiffness`."""
+        unknown = numpy.where(self.conditions.unknown < 0, self.conditions.count, self.conditions.unknown)
+        solved = self.solved.reshape(self.conditions.count + 1, self.directions, -1)
+        return solved[unknown][:, :, :-1] + self.conditions.driven
 
 
 class CoarseGrid:

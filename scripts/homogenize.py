@@ -26,10 +26,18 @@ except ModuleNotFoundError:
 
 import cell_cohesive
 import cell_conduction as conduction
-from cell_deck import Deck
+import cell_strength as strength
+from cell_deck import Deck, ForeignElement
 from cell_elements import Cell, NotSolved
 
 BLOCK = ["xx", "yy", "zz", "xy", "xz", "yz"]
+
+
+UNITS = {  # of forces and moments, in the order of `order`
+    "block": ["MPa"] * 6,
+    "plate": ["N/mm"] * 3 + ["N"] * 3,
+    "beam": ["N"] + ["N mm"] * 3,
+}
 
 
 class Failure(Exception):
@@ -50,23 +58,38 @@ def run_ccx(program, folder, name):
     return [line.strip() for line in text.splitlines() if "*WARNING" in line]
 
 
-def reactions(path, count, directions):
-    """Of each step the printed forces of the dependent nodes, or the fluxes into them: number -> one value a direction."""
-    steps, current = [], None
+def printed(path, deck, what, nodes):
+    """Of each step what was printed of a set of nodes: number -> one value a direction."""
+    steps, current, directions = [], None, deck.directions
     with path.open() as file:
         for line in file:
             if " for set " in line:
                 current = None
-                if line.startswith((" forces (fx,fy,fz)", " heat generation")) and "DEPENDENT" in line.upper():
+                if line.startswith(what) and f" {nodes} " in line.upper():
                     current = {}
                     steps.append(current)
             elif current is not None:
                 words = line.split()
                 if len(words) == 1 + directions:
                     current[int(words[0])] = [float(word) for word in words[1:]]
-    if len(steps) != count:
-        raise Failure(f"CalculiX printed the forces of {len(steps)} steps, not of {count}")
+    if len(steps) != len(deck.steps):
+        raise Failure(f"CalculiX printed{what[0]} of {len(steps)} steps, not of {len(deck.steps)}")
     return steps
+
+
+def reactions(path, deck):
+    """Of each step the forces of the dependent nodes, or the fluxes into them."""
+    return printed(path, deck, (" forces (fx,fy,fz)", " heat generation"), "DEPENDENT")
+
+
+def displacements(path, deck, drivers):
+    """Of every node, where each driver is 1 (nodes x 3 x drivers)."""
+    fields = numpy.zeros((max(deck.nodes) + 1, 3, len(drivers)))
+    for step, moved in zip(deck.steps, printed(path, deck, (" displacements",), "ALLNODES")):
+        for k, name in enumerate(drivers):
+            if step["drivers"].get(name):
+                fields[list(moved), :, k] = numpy.array(list(moved.values())) / step["drivers"][name]
+    return fields
 
 
 def driver_forces(deck, drivers, forces):
@@ -195,8 +218,8 @@ def check_bounds(matrix, voigt, reuss, plate):
 
 
 def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
-    """The matrix of the drivers' forces (fluxes) a unit of their strains (gradients), and the forces of one degree; warnings of
-    CalculiX and how it was done."""
+    """The matrix of the drivers' forces (fluxes) a unit of their strains (gradients), and the forces of one degree; the nodes'
+    displacements where materials have strengths; warnings of CalculiX and how it was done."""
     solver = given_solver
     if solver == "auto":
         largest = LARGEST_DIRECT_BEAM if is_beam(drivers) else LARGEST_DIRECT
@@ -204,26 +227,37 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
     if solver == "direct" and deck.wedges:
         raise Failure("CalculiX has no cohesive elements: leave out --solver direct")
     started = time.monotonic()
-    warnings = []
+    warnings, fields, breaks = [], None, strength.has_strengths(deck)
     if solver == "direct":
         name = "homogenize"  # not the name of a deck that is kept beside it
-        (folder / f"{name}.inp").write_text("\n".join(deck.lines) + "\n")
+        lines = "\n".join(deck.lines) + "\n"
+        if breaks:
+            lines = lines.replace("*END STEP", "*NODE PRINT, NSET=AllNodes\nU\n*END STEP")
+        (folder / f"{name}.inp").write_text(lines)
         warnings = run_ccx(ccx, folder, name)
-        forces = reactions(folder / f"{name}.dat", len(deck.steps), deck.directions)
-        matrix, thermal = stiffness_from_steps(deck, drivers, forces)
+        results = folder / f"{name}.dat"
+        matrix, thermal = stiffness_from_steps(deck, drivers, reactions(results, deck))
+        if breaks:
+            fields = displacements(results, deck, drivers)
     else:
-        matrix, thermal = Cell(deck, drivers, conduction.matrices(deck) if deck.physics else deck.matrices()).stiffness()
-    return matrix, thermal, {"solver": solver, "warnings": warnings, "seconds": time.monotonic() - started}
+        cell = Cell(deck, drivers, conduction.matrices(deck) if deck.physics else deck.matrices())
+        matrix, thermal = cell.stiffness()
+        if breaks:
+            fields = cell.displacements()
+    return matrix, thermal, fields, {"solver": solver, "warnings": warnings, "seconds": time.monotonic() - started}
 
 
 def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
-    deck = Deck(path)
+    try:
+        deck = Deck(path)
+    except ForeignElement as failure:
+        raise Failure(f"{path}: {failure}, which this script does not know: mesh it without --tetrahedron and --elements") from failure
     drivers = deck.drivers()
     if not drivers or not deck.steps:
         raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic; where it is periodic along one axis, --periodic will do)")
     if deck.cell is None:
         raise Failure(f"{path}: the deck does not say its cell")
-    matrix, thermal, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder)
+    matrix, thermal, fields, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder)
     facts |= {
         "file": str(path),
         "cell": numpy.linalg.norm(deck.cell.edges, axis=1).tolist(),
@@ -238,10 +272,14 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     if is_beam(drivers):
         if with_bounds:
             raise Failure("bounds are known of blocks and plates; leave out --bounds: this cell is periodic along one axis, a beam")
-        return facts | beam(deck, matrix, thermal)
-    plate = any(name.startswith("Curvature") for name in drivers)
-    measure = deck.cell.volume / (deck.cell.height if plate else 1)
-    return facts | elastic(deck, matrix / measure, thermal / measure, plate, with_bounds)
+        result = facts | beam(deck, matrix, thermal)
+    else:
+        plate = any(name.startswith("Curvature") for name in drivers)
+        measure = deck.cell.volume / (deck.cell.height if plate else 1)
+        result = facts | elastic(deck, matrix / measure, thermal / measure, plate, with_bounds)
+    if fields is not None:
+        result["first_failure"] = strength.first_failure(deck, fields, numpy.array(result["stiffness"]), result["order"])
+    return result
 
 
 def elastic(deck, matrix, thermal, plate, with_bounds):
@@ -384,6 +422,8 @@ def show(result):
         show_beam(result)
     else:
         show_elastic(result, plate)
+    if "first_failure" in result:
+        strength.show(result["first_failure"], UNITS[result["kind"]])
     for warning in result["warnings"] + result["notes"]:
         print(warning)
 
@@ -423,7 +463,7 @@ def main():
         prog="homogenize",
         description="Stiffness (C of a block, ABD of a plate, that of a beam periodic along one axis), engineering constants and thermal expansion of a unit "
         "cell, or the conductivity (diffusivity, permittivity) of one whose deck conducts, from its deck: by CalculiX, or by "
-        "conjugate gradients where it is large.",
+        "conjugate gradients where it is large. Where materials have strengths: what breaks first, too.",
         epilog="Options that are not known here are those of `selvage mesh`: --size, --voxel, --order, ...",
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")

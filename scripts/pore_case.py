@@ -94,18 +94,20 @@ class Case:
         if not last < RESIDUAL:
             raise Failure(f"simpleFoam did not converge (residual {last:.1g}): see {self.path / 'log.simpleFoam'}")
         end = max((folder for folder in self.path.glob("[0-9]*")), key=lambda folder: int(folder.name))
-        velocity = numbers_in(end / "U")[: self.facts["tets"]]
+        velocity = numbers_in(end / "U")[: len(self.volumes)]
         return (self.volumes[:, None] * velocity).sum(axis=0) / FORCE * 1e6, int(end.name)  # m2 a unit of force: mm2
 
     def _measure(self):
         """Unit normals of the faces, and the volumes of the cells, mm3."""
         mesh = self.path / "constant/polyMesh"
         points = 1e3 * numbers_in(mesh / "points")
-        corners = points[numpy.array([row.split() for row in re.findall(r"^3\(([^()]*)\)$", (mesh / "faces").read_text(), re.MULTILINE)], dtype=int)]
+        rows = [row.split() for row in re.findall(r"^[34]\(([^()]*)\)$", (mesh / "faces").read_text(), re.MULTILINE)]
+        corners = points[numpy.array([row + row[2:] if len(row) == 3 else row for row in rows], dtype=int)]
         owner, neighbour = (numpy.array(re.findall(r"^\d+$", (mesh / name).read_text(), re.MULTILINE)[1:], dtype=int) for name in ("owner", "neighbour"))
-        # The volume under each face, seen from the origin.
-        under = numpy.einsum("ni,ni->n", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])) / 6
-        count = self.facts["tets"]
+        # Of a triangle the last corner is repeated. The volume under each face, seen from the origin.
+        areas = numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]) / 2
+        middles = numpy.where((corners[:, 2] == corners[:, 3]).all(axis=1)[:, None], corners[:, :3].mean(axis=1), corners.mean(axis=1))
+        under = numpy.einsum("ni,ni->n", middles, areas) / 3
+        count = self.facts["tets"] + self.facts.get("layers", {}).get("wedges", 0)
         self.volumes = numpy.bincount(owner, under, count) - numpy.bincount(neighbour, under[: len(neighbour)], count)
-        areas = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         self.normals = areas / numpy.linalg.norm(areas, axis=1)[:, None]

@@ -283,11 +283,13 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_loads(text, mesh);
   text << "ENDDATA\n";
-  return finished(text,
-                  {{"GRID", mesh.numbered()},
-                   {element_type(mesh), mesh.elements.size() - mesh.count_wedges()},
-                   {"PSOLID", properties.count()}},
-                  {{"CPENTA", mesh.count_wedges()}, {"MPC", mesh.equations.size()}});
+  Result<WriteFacts> facts = finished(text,
+                                      {{"GRID", mesh.numbered()},
+                                       {element_type(mesh), mesh.elements.size() - mesh.count_wedges()},
+                                       {"PSOLID", properties.count()}},
+                                      {{"CPENTA", mesh.count_wedges()}, {"MPC", mesh.equations.size()}});
+  if (facts) facts->messages = fem::strengths_left_out(mesh.materials, "a Nastran deck");
+  return facts;
 }
 
 bool is_bulk_data(std::string_view head) {

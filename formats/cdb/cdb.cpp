@@ -1,5 +1,7 @@
 #include "formats/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -83,6 +85,46 @@ void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector
   write_interface_components(text, mesh, names);
 }
 
+// Fibres' are not, for a card wants those across, too.
+bool has_card(const fabric::Material& material) {
+  const auto* two = std::get_if<fabric::TransverseStrength>(&material.strength);
+  return two == nullptr || two->across;
+}
+
+std::vector<Message> fibre_strengths_left_out(const fem::Mesh& mesh) {
+  const auto found = std::find_if_not(mesh.materials.begin(), mesh.materials.end(), has_card);
+  if (found == mesh.materials.end()) return {};
+  return {
+      warning(Kind::unsupported,
+              fmt::format("ANSYS's card of strengths wants those across the yarn, too, which '{}' does not "
+                          "say: give its line `strength` YT, YC and S12, or --yarn-stiffness chamis",
+                          found->name))};
+}
+
+// Limits of stress along x, y and z (compression negative), and in shear xy, yz, xz. What is alike in all
+// directions and says none in shear breaks there by its principal stresses.
+void write_strength(TextBuffer& text, std::size_t number, const fabric::Material& material) {
+  std::array<double, 9> limits{};
+  if (const auto* same = std::get_if<fabric::IsotropicStrength>(&material.strength)) {
+    const double shear = same->shear.value_or(std::min(same->tension, same->compression));
+    limits = {same->tension, -same->compression, same->tension, -same->compression,
+              same->tension, -same->compression, shear,         shear,
+              shear};
+  } else if (const auto* two = std::get_if<fabric::TransverseStrength>(&material.strength);
+             two != nullptr && two->across) {
+    const auto& [yt, yc, s12, s23] = *two->across;
+    limits = {two->tension, -two->compression, yt, -yc, yt, -yc, s12, s23, s12};
+  } else {
+    return;
+  }
+  text << "TB,FCLI," << number << ",1,20,1";
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    if (i % 6 == 0) text << "\nTBDATA," << i + 1;
+    text << ',' << limits[i];
+  }
+  text << '\n';
+}
+
 void write_material(TextBuffer& text, std::size_t number, const fabric::Material& material) {
   const fem::Orthotropic c = fem::orthotropic(material);
   auto put_constant = [&](std::string_view label, double value) {
@@ -118,6 +160,7 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
     text << "! material " << i + 1 << ": " << names[i] << '\n';
     write_material(text, i + 1, mesh.materials[i]);
+    write_strength(text, i + 1, mesh.materials[i]);
   }
   write_cohesive_materials(text, mesh);
 }
@@ -164,12 +207,15 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_bonded_contact(text, mesh, names);
   text << "FINISH\n";
-  return finished(text,
-                  {{"nodes", mesh.nodes.size()},
-                   {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
-                   {"coordinate systems", frames.axes.size()}},
-                  {{"constraint equations", mesh.equations.size()},
-                   {"INTER" + std::to_string(cohesive_element(mesh)), mesh.cohesive_elements()}});
+  Result<WriteFacts> facts =
+      finished(text,
+               {{"nodes", mesh.nodes.size()},
+                {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
+                {"coordinate systems", frames.axes.size()}},
+               {{"constraint equations", mesh.equations.size()},
+                {"INTER" + std::to_string(cohesive_element(mesh)), mesh.cohesive_elements()}});
+  if (facts) facts->messages = fibre_strengths_left_out(mesh);
+  return facts;
 }
 
 bool is_an_archive(std::string_view head) {

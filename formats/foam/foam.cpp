@@ -17,26 +17,31 @@ namespace {
 // Owner and its number before the neighbour and its; `nodes` counter-clockwise seen from the neighbour.
 struct Face {
   std::size_t owner = 0, neighbour = 0;
-  std::array<std::size_t, 3> nodes{};
+  fem::ElementSide nodes{};
 };
 
-std::array<std::size_t, 3> corners_of(const fem::Mesh& mesh, std::size_t element, std::size_t side) {
-  const fem::ElementSide nodes = fem::side_nodes(mesh, element, side);
-  return {nodes[0], nodes[1], nodes[2]};
+// Of a triangle the last one is repeated.
+std::size_t corners_of(const fem::ElementSide& nodes) {
+  return nodes[2] == nodes[3] ? 3 : 4;
+}
+
+std::size_t count_cells(const fem::Mesh& mesh) {
+  return mesh.elements.size() + mesh.layers.wedges.size();
 }
 
 // Those between two cells in OpenFOAM's upper triangular order: by owners, of each by its neighbours.
 std::vector<Face> inner_faces(const fem::Mesh& mesh) {
   struct Seen {
-    std::array<std::size_t, 3> key;  // the corners, increasing
+    fem::ElementSide key;  // the corners, increasing; of a triangle the largest twice
     std::size_t element, side;
   };
   std::vector<Seen> seen;
-  const std::size_t sides = fem::element_sides(mesh.shape).size();
-  seen.reserve(sides * mesh.elements.size());
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
-    for (std::size_t s = 0; s < sides; ++s) {
-      Seen one{corners_of(mesh, e, s), e, s};
+  seen.reserve(4 * mesh.elements.size() + 5 * mesh.layers.wedges.size());
+  for (std::size_t e = 0; e < count_cells(mesh); ++e)
+    for (std::size_t s = 0; s < fem::element_sides(mesh, e).size(); ++s) {
+      Seen one{fem::side_nodes(mesh, e, s), e, s};
+      // Which corner of a triangle is repeated depends on the cell from which it is seen.
+      if (corners_of(one.key) == 3) one.key[3] = *std::max_element(one.key.begin(), one.key.end());
       std::sort(one.key.begin(), one.key.end());
       seen.push_back(one);
     }
@@ -47,7 +52,7 @@ std::vector<Face> inner_faces(const fem::Mesh& mesh) {
   for (std::size_t k = 0; k + 1 < seen.size(); ++k)
     if (seen[k].key == seen[k + 1].key)
       faces.push_back(
-          {seen[k].element, seen[k + 1].element, corners_of(mesh, seen[k].element, seen[k].side)});
+          {seen[k].element, seen[k + 1].element, fem::side_nodes(mesh, seen[k].element, seen[k].side)});
   std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
     return a.owner != b.owner ? a.owner < b.owner : a.neighbour < b.neighbour;
   });
@@ -59,18 +64,20 @@ std::vector<Face> inner_faces(const fem::Mesh& mesh) {
 std::vector<Face> faces_of(const fem::Mesh& mesh, const fem::Patch& patch) {
   std::vector<Face> faces;
   for (const fem::Patch::Side& side : patch.sides)
-    faces.push_back({side.element, 0, corners_of(mesh, side.element, side.side)});
+    faces.push_back({side.element, 0, fem::side_nodes(mesh, side.element, side.side)});
   if (patch.kind != fem::Patch::Kind::periodic || !patch.name.ends_with("_high")) return faces;
   const Vec3 step = mesh.cell->shape().edge(patch.name.front() - 'x');
   for (std::size_t k = 0; k < faces.size(); ++k) {
     const fem::Patch::Side& other = mesh.patches[patch.opposite].sides[k];
-    const Vec3 first = mesh.nodes[corners_of(mesh, other.element, other.side)[0]] + step;
+    const Vec3 first = mesh.nodes[fem::side_nodes(mesh, other.element, other.side)[0]] + step;
     const auto distance = [&](std::size_t node) { return (mesh.nodes[node] - first).norm(); };
     auto& nodes = faces[k].nodes;
+    const auto end = nodes.begin() + static_cast<std::ptrdiff_t>(corners_of(nodes));
     std::rotate(nodes.begin(),
-                std::min_element(nodes.begin(), nodes.end(),
+                std::min_element(nodes.begin(), end,
                                  [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); }),
-                nodes.end());
+                end);
+    if (end != nodes.end()) nodes[3] = nodes[2];
   }
   return faces;
 }
@@ -108,8 +115,11 @@ class Case {
     put_mesh("points", "vectorField", [&](TextBuffer& text) { write_points(text); });
     put_mesh("faces", "faceList", [&](TextBuffer& text) {
       write_list(text, faces_.size(), [&](std::size_t k) {
-        const auto& n = faces_[k].nodes;
-        text << "3(" << n[0] << ' ' << n[1] << ' ' << n[2] << ')';
+        const fem::ElementSide& n = faces_[k].nodes;
+        const std::size_t corners = corners_of(n);
+        text << corners;
+        for (std::size_t c = 0; c < corners; ++c) text << (c == 0 ? '(' : ' ') << n[c];
+        text << ')';
       });
     });
     put_mesh("owner", "labelList", [&](TextBuffer& text) {
@@ -150,7 +160,7 @@ class Case {
     std::string note;
     if (name == "owner" || name == "neighbour")
       note = fmt::format("nPoints: {} nCells: {} nFaces: {} nInternalFaces: {}", mesh_.nodes.size(),
-                         mesh_.elements.size(), faces_.size(), inner_);
+                         count_cells(mesh_), faces_.size(), inner_);
     put("constant/polyMesh", name, type, note, body);
   }
 
@@ -211,7 +221,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   TextBuffer text(output);
   text << "An OpenFOAM case by Selvage: ParaView opens it by this file.\n";
   return finished(text, {{"points", mesh.nodes.size()},
-                         {"cells", mesh.elements.size()},
+                         {"cells", count_cells(mesh)},
                          {"faces", the_case.faces()},
                          {"patches", mesh.patches.size()}});
 }
@@ -225,6 +235,7 @@ const Descriptor& descriptor() {
                                   .write_mesh = write,
                                   .order_of_pores = 1,
                                   .is_of_pores = true,
+                                  .has_layers = true,
                                   .folders = {"constant/polyMesh", "system"}};
   return self;
 }

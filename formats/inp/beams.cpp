@@ -60,9 +60,9 @@ std::string name_of_group(std::size_t k) {
 // CalculiX has round sections on beams of three nodes only: there the middles of all beams come behind the
 // nodes.
 void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams, const fem::DeckNames& names,
-                         const std::vector<Group>& groups, bool for_calculix) {
+                         const std::vector<Group>& groups, bool for_calculix, const fem::Forming* forming) {
   const fem::Mesh& mesh = beams.mesh;
-  text << "*NODE, NSET=AllNodes\n";
+  text << (forming == nullptr ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
   const auto write_node = [&](std::size_t number, const Vec3& p) {
     text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
   };
@@ -70,6 +70,10 @@ void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams, const fe
   for (std::size_t e = 0; for_calculix && e < mesh.elements.size(); ++e)
     write_node(mesh.nodes.size() + e + 1,
                (mesh.nodes[mesh.elements[e][0]] + mesh.nodes[mesh.elements[e][1]]) / 2);
+  if (forming != nullptr) {
+    write_rigid_nodes(text, mesh, *forming);
+    text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
+  }
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     text << "*ELEMENT, TYPE=" << beam_type(for_calculix) << ", ELSET=" << names.of(i) << '\n';
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e) {
@@ -199,6 +203,21 @@ void write_beam_step(TextBuffer& text, const fem::BeamModel& beams) {
   text << "*NODE FILE\nU, RF\n*EL FILE\nS, E\n*END STEP\n";
 }
 
+// General contact knows each yarn by its surface, with the thickness that the circle of its contact radius
+// has.
+void write_explicit_beams(TextBuffer& text, const fem::BeamModel& beams, const fem::DeckNames& names,
+                          const fem::Forming& forming) {
+  std::vector<ContactThickness> thicknesses;
+  for (std::size_t i = 0; i < beams.radii.size(); ++i) {
+    thicknesses.push_back({names.of(i) + "_Surface", 2 * beams.radii[i]});
+    text << "*SURFACE, NAME=" << thicknesses.back().surface << ", TYPE=ELEMENT\n" << names.of(i) << ",\n";
+  }
+  write_rigid_parts(text, beams.mesh, forming);
+  write_rigid_bodies(text, beams.mesh, forming);
+  write_amplitudes(text, forming);
+  write_explicit_step(text, forming, thicknesses);
+}
+
 }  // namespace
 
 Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
@@ -210,20 +229,29 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
       beams.mesh,
       {.longest = 80, .also = "-", .taken = {taken.begin(), taken.end()}, .endings = {"_Surface"}});
   const bool for_calculix = options.own.text(option::solver) == "calculix";
+  if (for_calculix && options.forming != nullptr)
+    return error(Kind::unsupported,
+                 "CalculiX has no general contact of beams: leave out --solver calculix, or --deck explicit");
   TextBuffer text(output);
   text << "*HEADING\nSelvage: " << std::string_view(beams.mesh.title).substr(0, 70)
        << "\n** Units: mm, N, MPa, tonne, s. Sections as " << (for_calculix ? "CalculiX" : "Abaqus")
        << " has them (--solver)\n";
   fem::write_yarn_names(text, beams.mesh, names, "**", 120);
-  write_beam_elements(text, beams, names, groups, for_calculix);
+  write_beam_elements(text, beams, names, groups, for_calculix, options.forming);
   write_beam_sections(text, beams, groups, for_calculix);
-  write_contacts(text, beams, names);
-  write_beam_step(text, beams);
-  return finished(text,
-                  {{"nodes", beams.mesh.nodes.size()},
-                   {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
-                   {"beam sections", groups.size()}},
-                  {{"contact pairs", beams.contacts.size()}});
+  if (options.forming != nullptr) {
+    write_explicit_beams(text, beams, names, *options.forming);
+  } else {
+    write_contacts(text, beams, names);
+    write_beam_step(text, beams);
+  }
+  Result<WriteFacts> facts = finished(text,
+                                      {{"nodes", beams.mesh.nodes.size()},
+                                       {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
+                                       {"beam sections", groups.size()}},
+                                      {{"contact pairs", beams.contacts.size()}});
+  if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an Abaqus deck of beams");
+  return facts;
 }
 
 }  // namespace selvage::formats::inp

@@ -7,6 +7,7 @@
 
 #include "core/text_buffer.h"
 #include "fem/contact_surfaces.h"
+#include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/sections.h"
 #include "formats/format.h"
@@ -44,12 +45,13 @@ struct Deck {
   fem::DeckNames names;
   std::vector<fem::Section> sections;
   fem::ContactSurfaces contact;
-  std::vector<Load> loads;               // of dry yarns that no cell cuts
-  std::vector<fem::NamedSet> node_sets;  // without those of all nodes, of drivers and of dependent nodes
-  std::string_view element, wedge;       // types of elements
+  std::vector<Load> loads;                // of dry yarns that no cell cuts
+  std::vector<fem::NamedSet> node_sets;   // without those of all nodes, of drivers and of dependent nodes
+  std::string_view element, wedge;        // types of elements
+  const fem::Forming* forming = nullptr;  // an explicit step, in place of all other loads
 };
 // Error (internal): a region without a material that has elastic constants.
-Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own);
+Result<Deck> plan_deck(const fem::Mesh& mesh, const MeshFileOptions& options);
 
 // Has the section's material axes? Yarns have an orientation in any case, for the material that somebody may
 // give them later.
@@ -87,6 +89,21 @@ std::vector<std::size_t> dependent_nodes(const fem::Mesh& mesh);
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);
 // A step for each load case.
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh);
+
+// Of an explicit step: the nodes of plates and of references, behind the mesh's; plates, grips and the sets
+// of references (NAME_Ref, References).
+void write_rigid_nodes(TextBuffer& text, const fem::Mesh& mesh, const fem::Forming& forming);
+void write_rigid_parts(TextBuffer& text, const fem::Mesh& mesh, const fem::Forming& forming);
+// *RIGID BODY and *AMPLITUDE cards, which belong before the step.
+void write_rigid_bodies(TextBuffer& text, const fem::Mesh& mesh, const fem::Forming& forming);
+void write_amplitudes(TextBuffer& text, const fem::Forming& forming);
+// Of beams: what is thick in contact.
+struct ContactThickness {
+  std::string surface;
+  double thickness = 0;  // mm
+};
+void write_explicit_step(TextBuffer& text, const fem::Forming& forming,
+                         const std::vector<ContactThickness>& thicknesses = {});
 
 // Yarns as beams: a deck of its own.
 Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,

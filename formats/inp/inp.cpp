@@ -40,6 +40,26 @@ void write_elastic(TextBuffer& text, const fabric::Material& material) {
   text << '\n' << real(c.g23) << '\n';
 }
 
+// Comments, for Abaqus evaluates strengths (*FAIL STRESS, Hashin's *DAMAGE INITIATION) in elements of plane
+// stress only, and CalculiX knows none: scripts/homogenize reads them.
+void write_strength(TextBuffer& text, const fabric::Material& material) {
+  const auto put = [&](std::string_view kind, std::initializer_list<double> values) {
+    text << "** Strength: " << kind;
+    for (const double value : values) text << ' ' << real(value);
+  };
+  if (const auto* same = std::get_if<fabric::IsotropicStrength>(&material.strength)) {
+    put("isotropic", {same->tension, same->compression});
+    if (same->shear) text << ' ' << real(*same->shear);
+    text << '\n';
+  }
+  if (const auto* two = std::get_if<fabric::TransverseStrength>(&material.strength)) {
+    put("transverse", {two->tension, two->compression});
+    if (const auto& a = two->across)
+      for (const double value : {a->tension, a->compression, a->s12, a->s23}) text << ' ' << real(value);
+    text << '\n';
+  }
+}
+
 // Every physics is one of heat conduction to the solver.
 void write_conductivity(TextBuffer& text, const fem::Mesh& mesh, const fabric::Material& material) {
   const auto& [along, across] = *(material.*fem::transport_law(mesh.physics).member);
@@ -72,6 +92,7 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<
       write_conductivity(text, mesh, material);
       continue;
     }
+    write_strength(text, material);
     if (!std::holds_alternative<std::monostate>(material.elastic)) write_elastic(text, material);
     const fem::Orthotropic constants = fem::orthotropic(material);
     if (constants.density) text << "*DENSITY\n" << real(*constants.density) << '\n';
@@ -85,11 +106,14 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<
   }
 }
 
-void write_sections(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
-                    const std::vector<std::string>& names) {
-  for (const fem::Section& section : sections)
+// Of bricks with reduced integration the hourglass control is said in an explicit step.
+void write_sections(TextBuffer& text, const Deck& deck, const std::vector<std::string>& names) {
+  const bool is_controlled = deck.forming != nullptr && deck.element == "C3D8R";
+  if (is_controlled) text << "*SECTION CONTROLS, NAME=YarnControls, HOURGLASS=ENHANCED\n";
+  for (const fem::Section& section : deck.sections)
     text << "*SOLID SECTION, ELSET=" << section.name << ", MATERIAL=" << names[section.material]
-         << (is_oriented(mesh, section) ? ", ORIENTATION=YARNORI\n" : "\n");
+         << (is_oriented(deck.mesh, section) ? ", ORIENTATION=YARNORI" : "")
+         << (is_controlled ? ", CONTROLS=YarnControls\n" : "\n");
 }
 
 // The line by which a deck takes in its mesh. CalculiX finds no name with a blank or a comma, nor a longer
@@ -109,7 +133,7 @@ Result<std::string> inclusion_of(const std::string& file) {
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& options) {
-  const Result<Deck> deck = plan_deck(mesh, options.own);
+  const Result<Deck> deck = plan_deck(mesh, options);
   if (!deck) return deck.error();
   const bool is_split = !options.companion.empty();
   const Result<std::string> inclusion = is_split ? inclusion_of(options.companion) : std::string();
@@ -124,7 +148,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_model_part(text, *deck);
   return finished(text, is_split ? EntityCounts() : counts_of_mesh(*deck),
                   {{"equations", mesh.equations.size()},
-                   {"contact pairs", deck->contact.pairs.size()},
+                   {"contact pairs", options.forming == nullptr ? deck->contact.pairs.size() : 0},
                    {"steps", mesh.load_cases.size()}});
 }
 
@@ -144,23 +168,36 @@ fem::DeckNames names_of(const fem::Mesh& mesh) {
   return {mesh, std::move(rule)};
 }
 
-// Those of heat transfer begin with a D. Voxels are integrated in full: hourglasses would bend a cell.
-static std::string_view element_type(const fem::Mesh& mesh, const OptionValues& own) {
+// Those of heat transfer begin with a D; of second order explicit steps have the modified tetrahedron alone.
+// Voxels are integrated in full: hourglasses would bend a cell.
+static std::string_view element_type(const fem::Mesh& mesh, const MeshFileOptions& options) {
   const bool conducts = mesh.physics != fem::Physics::elastic;
   if (mesh.shape == fem::Mesh::Shape::hexahedron)
-    return conducts ? "DC3D8" : mesh.cell ? "C3D8" : own.text(option::brick);
+    return conducts ? "DC3D8" : mesh.cell ? "C3D8" : options.own.text(option::brick);
   if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
-  return conducts ? "DC3D10" : "C3D10";
+  if (conducts) return "DC3D10";
+  return options.forming != nullptr ? "C3D10M" : options.own.text(option::tetrahedron);
 }
 
-Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own) {
+Result<Deck> plan_deck(const fem::Mesh& mesh, const MeshFileOptions& options) {
+  const std::string_view tetrahedron = options.own.text(option::tetrahedron);
+  if (tetrahedron != option::tetrahedron.preset && mesh.order == 1)
+    return error(Kind::unsupported,
+                 fmt::format("{} {} has ten nodes, and this mesh has four a tetrahedron: say --order 2",
+                             option::tetrahedron.name, tetrahedron));
   const fem::DeckNames names = names_of(mesh);
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const bool touches = mesh.physics == fem::Physics::elastic;
-  Deck deck = {
-      mesh, names, std::move(*sections),    touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
-      {},   {},    element_type(mesh, own), "C3D6"};
+  Deck deck = {mesh,
+               names,
+               std::move(*sections),
+               touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
+               {},
+               {},
+               element_type(mesh, options),
+               "C3D6",
+               options.forming};
   if (mesh.cell) {
     deck.node_sets = fem::node_sets(mesh, names);
     return deck;
@@ -183,7 +220,13 @@ void write_model_part(TextBuffer& text, const Deck& deck) {
   const std::vector<std::string> materials = fem::solver_names(mesh.materials);
   write_materials(text, mesh, materials);
   text << "*ORIENTATION, NAME=YARNORI, SYSTEM=RECTANGULAR\nYARNDIST1\n";
-  write_sections(text, mesh, deck.sections, materials);
+  write_sections(text, deck, materials);
+  if (deck.forming != nullptr) {
+    write_rigid_bodies(text, mesh, *deck.forming);
+    write_amplitudes(text, *deck.forming);
+    write_explicit_step(text, *deck.forming);
+    return;
+  }
   write_cohesive_materials(text, deck);
   write_contact_pairs(text, deck);
   write_ties(text, deck);
@@ -205,6 +248,7 @@ const Descriptor& descriptor() {
       .read_deck = read_deck,
       .write_mesh = write,
       .write_beams = write_beams,
+      .carries_forming = true,
       .carries_transport = true,
       .order_of_surfaces = 2,
       .order_of_cohesive = 1,

@@ -10,12 +10,16 @@ void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
   text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
 }
 
-// One block, for meshio knows no second one: drivers, which are no part of AllNodes, stand at its end.
-void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
-  text << (mesh.drivers.empty() ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
+// One block, for meshio knows no second one: drivers and rigid parts, whose nodes are no part of AllNodes,
+// stand at its end.
+void write_nodes(TextBuffer& text, const Deck& deck) {
+  const fem::Mesh& mesh = deck.mesh;
+  const bool has_more = !mesh.drivers.empty() || deck.forming != nullptr;
+  text << (has_more ? "*NODE\n" : "*NODE, NSET=AllNodes\n");
   for (std::size_t n = 0; n < mesh.numbered(); ++n) write_node(text, n + 1, mesh.place(n));
+  if (deck.forming != nullptr) write_rigid_nodes(text, mesh, *deck.forming);
+  if (has_more) text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
   if (mesh.drivers.empty()) return;
-  text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.number_of_driver(k) + 1 << '\n';
   text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
@@ -85,7 +89,7 @@ void write_directions(TextBuffer& text, const Deck& deck) {
 
 Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
                                    const MeshFileOptions& options) {
-  const Result<Deck> deck = plan_deck(mesh, options.own);
+  const Result<Deck> deck = plan_deck(mesh, options);
   if (!deck) return deck.error();
   TextBuffer text(output);
   text << "** Mesh by Selvage: the deck that stands beside it includes it.\n";
@@ -107,7 +111,7 @@ bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
 }
 
 void write_mesh_part(TextBuffer& text, const Deck& deck) {
-  write_nodes(text, deck.mesh);
+  write_nodes(text, deck);
   write_elements(text, deck);
   write_cohesive_elements(text, deck);
   write_element_sets(text, deck);
@@ -115,6 +119,7 @@ void write_mesh_part(TextBuffer& text, const Deck& deck) {
   if (!deck.mesh.equations.empty()) write_node_sets(text, {{"Dependent", dependent_nodes(deck.mesh)}});
   write_contact_surfaces(text, deck);
   write_interface_surfaces(text, deck);
+  if (deck.forming != nullptr) write_rigid_parts(text, deck.mesh, *deck.forming);
   write_directions(text, deck);
 }
 

@@ -22,6 +22,17 @@ inline constexpr Option brick = {
     .why = "is of swept hexahedra",
     .needs = "--elements"};
 
+inline constexpr Option tetrahedron = {
+    .name = "--tetrahedron",
+    .help =
+        "the element of tetrahedra with ten nodes: the usual one, or Abaqus's modified one, for contact, "
+        "plasticity and large strains",
+    .argument = Argument::one_of("C3D10 C3D10M"),
+    .preset = "C3D10",
+    .why = "asks for an element of ten nodes that Abaqus has and CalculiX has not",
+    .needs = "--order",
+    .not_with = "--voxel --physics --solver"};
+
 inline constexpr Option solver = {
     .name = "--solver",
     .help =
@@ -33,7 +44,7 @@ inline constexpr Option solver = {
     .needs = "--elements"};
 
 inline std::vector<const Option*> all() {
-  return {&split_deck, &brick, &solver};
+  return {&split_deck, &brick, &tetrahedron, &solver};
 }
 
 }  // namespace selvage::formats::inp::option

@@ -21,7 +21,8 @@ using fem::SolvedDeck;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
+    text.remove_suffix(1);
   return text;
 }
 
@@ -57,7 +58,8 @@ Card card_of(std::string_view line) {
 
 std::size_t nodes_of(std::string type) {
   if (type.starts_with('D')) type.erase(0, 1);
-  for (const auto& [name, nodes] : {std::pair("C3D10", 10), std::pair("C3D4", 4), std::pair("C3D6", 6), std::pair("C3D8", 8)})
+  for (const auto& [name, nodes] :
+       {std::pair("C3D10", 10), std::pair("C3D4", 4), std::pair("C3D6", 6), std::pair("C3D8", 8)})
     if (type.starts_with(name)) return static_cast<std::size_t>(nodes);
   return 0;
 }
@@ -135,7 +137,8 @@ class Reader {
       return fail(spot(), "this deck is in several files: write it without --split-deck, and solve that one",
                   Kind::unsupported);
     if (word == "PLASTIC" || word == "USER MATERIAL" || word == "HYPERELASTIC" || word == "DEPVAR")
-      return fail(spot(), fmt::format("*{}: stresses are reckoned of linear elasticity alone", word), Kind::unsupported);
+      return fail(spot(), fmt::format("*{}: stresses are reckoned of linear elasticity alone", word),
+                  Kind::unsupported);
     if (word == "STEP") {
       if (card_.values.contains("NLGEOM") && key_of(card_.value("NLGEOM")) != "NO")
         return fail(spot(), "NLGEOM: stresses are reckoned of small displacements alone", Kind::unsupported);
@@ -146,12 +149,14 @@ class Reader {
       nodes_ = nodes_of(key_of(card_.value("TYPE")));
       pending_.clear();
       if (nodes_ == 0)
-        return fail(spot(), fmt::format("elements of the type {} are not read: C3D4, C3D6, C3D8 and C3D10 are",
-                                        in_quotes(card_.value("TYPE"))),
+        return fail(spot(),
+                    fmt::format("elements of the type {} are not read: C3D4, C3D6, C3D8 and C3D10 are",
+                                in_quotes(card_.value("TYPE"))),
                     Kind::unsupported);
     }
     if (word == "SOLID SECTION")
-      sections_.push_back({card_.value("ELSET"), key_of(card_.value("MATERIAL")), key_of(card_.value("ORIENTATION")), spot()});
+      sections_.push_back({card_.value("ELSET"), key_of(card_.value("MATERIAL")),
+                           key_of(card_.value("ORIENTATION")), spot()});
     return true;
   }
 
@@ -181,7 +186,8 @@ class Reader {
     if (word == "ELASTIC" || word == "EXPANSION") return take_law();
     if (word == "DISTRIBUTION") return take_distribution();
     if (word == "ORIENTATION" && is_first) return take_orientation();
-    if (word == "TEMPERATURE" || (word == "INITIAL CONDITIONS" && key_of(card_.value("TYPE")) == "TEMPERATURE"))
+    if (word == "TEMPERATURE" ||
+        (word == "INITIAL CONDITIONS" && key_of(card_.value("TYPE")) == "TEMPERATURE"))
       return take_temperature(is_first);
     return true;
   }
@@ -195,7 +201,8 @@ class Reader {
     for (std::size_t k = 1; k <= nodes_; ++k) element.nodes.push_back(number_of(pending_[k]));
     const long number = number_of(pending_.front());
     const std::string set = key_of(card_.value("ELSET"));
-    const auto [known, is_new] = region_of_.try_emplace(set, static_cast<std::uint32_t>(deck_.regions.size()));
+    const auto [known, is_new] =
+        region_of_.try_emplace(set, static_cast<std::uint32_t>(deck_.regions.size()));
     if (is_new) deck_.regions.push_back(card_.value("ELSET"));
     element.region = known->second;
     deck_.elements[number] = std::move(element);
@@ -255,9 +262,10 @@ class Reader {
       const double g = c[0] / 2 / (1 + c[1]);
       c = {c[0], c[0], c[0], c[1], c[1], c[1], g, g, g};
     } else if (type != "ENGINEERING CONSTANTS") {
-      return fail(elastic_spot_, fmt::format("elastic constants of the type {} are not read: isotropic ones and ENGINEERING "
-                                      "CONSTANTS are",
-                                      in_quotes(type)),
+      return fail(elastic_spot_,
+                  fmt::format("elastic constants of the type {} are not read: isotropic ones and ENGINEERING "
+                              "CONSTANTS are",
+                              in_quotes(type)),
                   Kind::unsupported);
     }
     if (c.size() < 9) return fail(elastic_spot_, "nine constants are expected here");
@@ -286,7 +294,8 @@ class Reader {
     const auto values = numbers(line_);
     if (!values) return false;
     if (values->size() < 6) return fail(spot(), "two directions are expected here");
-    orientations_[name] = {{}, {Vec3((*values)[0], (*values)[1], (*values)[2]), Vec3((*values)[3], (*values)[4], (*values)[5])}};
+    orientations_[name] = {
+        {}, {Vec3((*values)[0], (*values)[1], (*values)[2]), Vec3((*values)[3], (*values)[4], (*values)[5])}};
     return true;
   }
 
@@ -312,7 +321,8 @@ class Reader {
       if (set == sets_.end() || material == materials_.end())
         return fail(card.spot, "the element set or the material of this section is not there");
       const auto number = static_cast<std::uint32_t>(deck_.sections.size());
-      deck_.sections.push_back({!card.orientation.empty(), material->second.stiffness, material->second.expansion});
+      deck_.sections.push_back(
+          {!card.orientation.empty(), material->second.stiffness, material->second.expansion});
       for (const long one : set->second) {
         const auto element = deck_.elements.find(one);
         if (element == deck_.elements.end()) continue;
@@ -322,20 +332,23 @@ class Reader {
       }
     }
     for (const auto& [number, element] : deck_.elements)
-      if (!taken_.contains(number)) return fail({nullptr, 0, 0}, fmt::format("element {} has no solid section", number));
+      if (!taken_.contains(number))
+        return fail({nullptr, 0, 0}, fmt::format("element {} has no solid section", number));
     return true;
   }
 
   bool orient(const SectionCard& card, long number, SolvedDeck::Element& element) {
     const auto orientation = orientations_.find(card.orientation);
-    if (orientation == orientations_.end()) return fail(card.spot, "the orientation of this section is not there");
+    if (orientation == orientations_.end())
+      return fail(card.spot, "the orientation of this section is not there");
     const auto& [distribution, axes] = orientation->second;
     Axes own = axes;
     if (!distribution.empty()) {
       const auto& listed = distributions_[distribution];
       const auto found = listed.find(number);
       if (found == listed.end())
-        return fail(card.spot, fmt::format("the distribution {} has no directions of element {}", distribution, number));
+        return fail(card.spot,
+                    fmt::format("the distribution {} has no directions of element {}", distribution, number));
       own = found->second;
     }
     if (own.along.cross(own.across).norm() < 1e-9)

@@ -9,9 +9,10 @@
 
 namespace selvage::formats::inp {
 
-// Decks of Abaqus and CalculiX in one file: C3D4, C3D10, C3D6 and C3D8 (and those that only conduct), solid sections, linear elasticity by
-// isotropic or engineering constants, orientations of all elements or of each, one temperature a step. What else decks say is
-// passed by, but what makes stresses that do not follow from these: includes, plasticity, large displacements.
+// Decks of Abaqus and CalculiX in one file: C3D4, C3D10, C3D6 and C3D8 (and those that only conduct), solid
+// sections, linear elasticity by isotropic or engineering constants, orientations of all elements or of each,
+// one temperature a step. What else decks say is passed by, but what makes stresses that do not follow from
+// these: includes, plasticity, large displacements.
 std::optional<fem::SolvedDeck> read_deck(const Source& source, Diagnostics& diagnostics);
 
 }  // namespace selvage::formats::inp

@@ -8,6 +8,7 @@
 #include "fem/materials.h"
 #include "fem/sections.h"
 #include "formats/k/deck.h"
+#include "formats/k/explicit.h"
 
 namespace selvage::formats::k {
 namespace {
@@ -113,7 +114,7 @@ void write_contacts(TextBuffer& text, const fem::BeamModel& beams, const fem::De
 }  // namespace
 
 Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
-                               const MeshFileOptions& /*options*/) {
+                               const MeshFileOptions& options) {
   const fem::DeckNames names(beams.mesh, {.longest = 70, .is_text = true, .unfit = "*$,&"});
   const BeamParts parts = parts_of(beams);
   TextBuffer text(output);
@@ -125,13 +126,25 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_materials(text, beams.mesh);
   write_beam_elements(text, beams.mesh, parts);
   write_beam_sets(text, beams, parts, names);
-  write_contacts(text, beams, names);
+  if (options.forming != nullptr)
+    write_forming(text, *options.forming,
+                  {.nodes = beams.mesh.nodes.size(),
+                   .elements = beams.mesh.elements.size(),
+                   .parts = parts.list.size(),
+                   .sections = parts.list.size(),
+                   .materials = beams.mesh.materials.size(),
+                   .node_sets = fem::node_sets(beams.mesh, names).size()},
+                  true);
+  else
+    write_contacts(text, beams, names);
   text << "*END\n";
-  return finished(text,
-                  {{"nodes", beams.mesh.nodes.size()},
-                   {"beams", beams.mesh.elements.size()},
-                   {"parts", parts.list.size()}},
-                  {{"contact pairs", beams.contacts.size()}});
+  Result<WriteFacts> facts = finished(text,
+                                      {{"nodes", beams.mesh.nodes.size()},
+                                       {"beams", beams.mesh.elements.size()},
+                                       {"parts", parts.list.size()}},
+                                      {{"contact pairs", beams.contacts.size()}});
+  if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an LS-DYNA file of beams");
+  return facts;
 }
 
 }  // namespace selvage::formats::k

@@ -26,6 +26,9 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh);
 void write_list(TextBuffer& text, std::string_view keyword, std::size_t number, std::string_view name,
                 const std::vector<std::size_t>& members);
 
+// All load cases of a unit cell by *CASE; nothing where it has none.
+void write_cell_loading(TextBuffer& text, const fem::Mesh& mesh);
+
 // Yarns as beams of their resultants.
 Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
                                const MeshFileOptions& options);

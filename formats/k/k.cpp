@@ -5,8 +5,8 @@
 #include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
-#include "fem/supports.h"
 #include "formats/k/deck.h"
+#include "formats/k/explicit.h"
 #include "formats/k/interfaces.h"
 
 namespace selvage::formats::k {
@@ -108,7 +108,7 @@ void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector
 
 // A wedge as LS-DYNA has it: a quadrilateral, and over it two nodes that are repeated.
 std::vector<std::size_t> solid_nodes(const fem::Mesh& mesh, std::size_t e) {
-  const std::vector<std::size_t> n = mesh.different_nodes_of(e);
+  std::vector<std::size_t> n = mesh.different_nodes_of(e);
   if (mesh.is_wedge(e)) return {n[0], n[1], n[4], n[3], n[2], n[2], n[5], n[5]};
   return n;
 }
@@ -167,53 +167,7 @@ void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
-// One linear step in which the drivers go to what the parameters say: the first load case.
-void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
-  if (mesh.load_cases.empty()) return;
-  text << "$ The drivers' values are those of the load case '" << mesh.load_cases.front().name
-       << "'. Others:\n";
-  for (const fem::LoadCase& load : mesh.load_cases) {
-    text << "$   " << load.name << ':';
-    for (const std::optional<double>& value : load.drivers) {
-      if (value)
-        text << ' ' << *value;
-      else
-        text << " free";
-    }
-    text << '\n';
-  }
-  text << "*PARAMETER\n";
-  for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
-    put_left(text, "R   VALUE" + std::to_string(d), 10);
-    put_reals(text, {mesh.load_cases.front().drivers[d].value_or(0)});
-  }
-  text << "*CONTROL_IMPLICIT_GENERAL\n";
-  put_reals(text, {1, 1});
-  text << "*CONTROL_IMPLICIT_SOLUTION\n";
-  put_integers(text, {1});
-  text << "*CONTROL_TERMINATION\n";
-  put_reals(text, {1});
-  text << "*DEFINE_CURVE\n";
-  put_integers(text, {1});
-  put_reals(text, {0, 0}, 20);
-  put_reals(text, {1, 1}, 20);
-  text << "*BOUNDARY_SPC_NODE\n";
-  for (const auto& [node, only] : fem::supports(mesh)) {
-    const auto is_held = [&, only = only](int direction) { return !only || *only == direction ? 1U : 0U; };
-    put_integers(text, {node + 1, 0, is_held(0), is_held(1), is_held(2), 0, 0, 0});
-  }
-  for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
-    put_integers(text, {mesh.number_of_driver(d) + 1, 0, 0, 1, 1, 0, 0, 0});
-  text << "*BOUNDARY_PRESCRIBED_MOTION_NODE\n";
-  for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
-    if (!mesh.load_cases.front().drivers[d]) continue;
-    put_right(text, {mesh.number_of_driver(d) + 1, 1, 2, 1}, 10);
-    put_right(text, "&VALUE" + std::to_string(d), 10);
-    text << '\n';
-  }
-}
-
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& options) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
   if (mesh.numbered() > most || mesh.elements.size() + mesh.cohesive_elements() > most)
     return error(Kind::limit,
@@ -238,11 +192,24 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_sets(text, mesh, *sections, names);
   write_tied_contact(text, mesh, names);
   write_equations(text, mesh);
-  write_loading(text, mesh);
+  if (options.forming != nullptr)
+    write_forming(text, *options.forming,
+                  {.nodes = mesh.numbered(),
+                   .elements = mesh.elements.size(),
+                   .parts = sections->size(),
+                   .sections = 1,
+                   .materials = mesh.materials.size(),
+                   .node_sets = fem::node_sets(mesh, names).size() + mesh.drivers.size()},
+                  false);
+  else
+    write_cell_loading(text, mesh);
   text << "*END\n";
-  return finished(
+  Result<WriteFacts> facts = finished(
       text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
       {{"constraints", mesh.equations.size()}, {"cohesive solids", mesh.cohesive_elements()}});
+  if (facts)
+    facts->messages = fem::strengths_left_out(mesh.materials, "an LS-DYNA file of elastic materials");
+  return facts;
 }
 
 bool is_a_keyword_file(std::string_view head) {
@@ -258,6 +225,7 @@ const Descriptor& descriptor() {
                                   .sniff = is_a_keyword_file,
                                   .write_mesh = write,
                                   .write_beams = write_beams,
+                                  .carries_forming = true,
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 1};
   return self;

@@ -37,8 +37,11 @@ class CellFile {
   }
 
   [[nodiscard]] EntityCounts counts() const {
-    std::size_t sides = 0;
-    for (const Surface& surface : topology_.surfaces) sides += surface.sides.size();
+    std::size_t sides = 0, quadrangles = 0;
+    for (const Surface& surface : topology_.surfaces) {
+      sides += surface.sides.size();
+      quadrangles += count_sides(surface, 4);
+    }
     EntityCounts counts = {
         {"nodes", mesh_.nodes.size()},
         {mesh_.shape == fem::Mesh::Shape::hexahedron ? "quadrangles" : "triangles", sides},
@@ -46,10 +49,23 @@ class CellFile {
         {"physical groups", groups_.size() + mesh_.regions.size() + layers() + 2},
         {"periodic entities", copies_.size()}};
     if (layers() > 0) counts["wedges"] = mesh_.cohesive_elements();
+    if (const std::size_t wedges = mesh_.layers.wedges.size(); wedges > 0) {
+      counts["triangles"] = sides - quadrangles;
+      counts["quadrangles"] = quadrangles;
+      counts["wedges"] = wedges;
+    }
     return counts;
   }
 
  private:
+  [[nodiscard]] static std::size_t corners_of(const std::array<std::size_t, 4>& side) {
+    return side[3] == side[2] ? 3 : 4;
+  }
+  [[nodiscard]] static std::size_t count_sides(const Surface& surface, std::size_t corners) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        surface.sides, [corners](const auto& side) { return corners_of(side) == corners; }));
+  }
+
   // Volumes of cohesive elements: numbered behind those of the regions.
   [[nodiscard]] std::size_t layers() const {
     return mesh_.joining == fem::Joining::cohesive ? mesh_.interfaces.size() : 0;
@@ -93,7 +109,7 @@ class CellFile {
 
   // The nodes of one side or edge in Gmsh's order.
   [[nodiscard]] std::vector<std::size_t> nodes_of(const std::array<std::size_t, 4>& side) const {
-    const std::size_t corners = side[3] == side[2] ? 3 : 4;
+    const std::size_t corners = corners_of(side);
     std::vector<std::size_t> nodes(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(corners));
     if (mesh_.order == 2)
       for (std::size_t k = 0; k < corners; ++k) nodes.push_back(middle(side[k], side[(k + 1) % corners]));
@@ -127,6 +143,8 @@ class CellFile {
     for (std::size_t i = 0; i < counts[3]; ++i)
       for (std::size_t e = mesh_.regions[i].first_element; e < mesh_.regions[i].last_element; ++e)
         for (const std::size_t node : mesh_.nodes_of(e)) take(3, i, node);
+    for (const auto& wedge : mesh_.layers.wedges)
+      for (const std::size_t node : wedge) take(3, 0, node);
   }
 
   void write_names() {
@@ -189,6 +207,8 @@ class CellFile {
     Box3 box;
     for (std::size_t e = mesh_.regions[i].first_element; e < mesh_.regions[i].last_element; ++e)
       for (const std::size_t node : mesh_.nodes_of(e)) box.extend(mesh_.nodes[node]);
+    for (const auto& wedge : mesh_.layers.wedges)  // of the only region
+      for (const std::size_t node : wedge) box.extend(mesh_.nodes[node]);
     return box;
   }
 
@@ -225,14 +245,17 @@ class CellFile {
 
   // Gmsh's types: 15 point, 1 and 8 lines, 2 and 9 triangles, 3 quadrangle.
   void write_elements() {
-    const bool is_brick = mesh_.shape == fem::Mesh::Shape::hexahedron, is_straight = mesh_.order == 1;
-    std::size_t count = topology_.points.size() + mesh_.elements.size() + mesh_.cohesive_elements();
+    const bool is_straight = mesh_.order == 1;
+    const std::size_t wedges = mesh_.layers.wedges.size();
+    std::size_t count = topology_.points.size() + mesh_.elements.size() + mesh_.cohesive_elements() + wedges;
+    std::size_t blocks = topology_.points.size() + topology_.curves.size() + mesh_.regions.size() + layers() +
+                         (wedges > 0 ? 1 : 0);
     for (const Curve& curve : topology_.curves) count += curve.edges.size();
-    for (const Surface& surface : topology_.surfaces) count += surface.sides.size();
-    text_ << "$Elements\n"
-          << topology_.points.size() + topology_.curves.size() + topology_.surfaces.size() +
-                 mesh_.regions.size() + layers()
-          << ' ' << count << " 1 " << count << '\n';
+    for (const Surface& surface : topology_.surfaces) {
+      count += surface.sides.size();
+      for (const std::size_t corners : {3U, 4U}) blocks += count_sides(surface, corners) > 0 ? 1 : 0;
+    }
+    text_ << "$Elements\n" << blocks << ' ' << count << " 1 " << count << '\n';
     for (std::size_t i = 0; i < topology_.points.size(); ++i) {
       open_block(0, i, 15, 1);
       write_element({topology_.points[i]});
@@ -242,11 +265,19 @@ class CellFile {
       for (const auto& edge : topology_.curves[i].edges) write_element(nodes_of(edge));
     }
     for (std::size_t i = 0; i < topology_.surfaces.size(); ++i) {
-      open_block(2, i, is_brick ? 3 : is_straight ? 2 : 9, topology_.surfaces[i].sides.size());
-      for (const auto& side : topology_.surfaces[i].sides) write_element(nodes_of(side));
+      const Surface& surface = topology_.surfaces[i];
+      for (const std::size_t corners : {3U, 4U}) {
+        const std::size_t sides = count_sides(surface, corners);
+        if (sides == 0) continue;
+        open_block(2, i, corners == 4 ? 3 : is_straight ? 2 : 9, sides);
+        for (const auto& side : surface.sides)
+          if (corners_of(side) == corners) write_element(nodes_of(side));
+      }
     }
     write_volume_elements(text_, mesh_, number_);
     number_ += mesh_.elements.size();
+    if (wedges > 0) open_block(3, 0, 6, wedges);
+    for (const auto& wedge : mesh_.layers.wedges) write_element({wedge.begin(), wedge.end()});
     write_layers();
     text_ << "$EndElements\n";
   }

@@ -219,7 +219,8 @@ const Descriptor& descriptor() {
                                   .write_mesh = write,
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 1,
-                                  .order_of_pores = 2};
+                                  .order_of_pores = 2,
+                                  .has_layers = true};
   return self;
 }
 

@@ -95,6 +95,9 @@ constexpr std::array lessons = {
     // --- material
     Lesson{"elastic", "material", "elastic isotropic E NU | transverse E1 E2 NU12 G12 NU23",
            "Stiffness; 1 is along the yarn. -1 < NU < 0.5.", "elastic isotropic 3400 0.35", "modulus"},
+    Lesson{"strength", "material", "strength isotropic T C [S] | transverse XT XC [YT YC S12 [S23]]",
+           "The largest stresses: tension, compression, shear; X along the yarn, Y across it.",
+           "strength isotropic 80 120 60", "modulus"},
     Lesson{"expansion", "material", "expansion ALONG ACROSS", "Thermal expansion.", "expansion 6e-6 21e-6",
            "expansion"},
     Lesson{"conductivity", "material", "conductivity K | ALONG ACROSS",

@@ -159,11 +159,48 @@ void read_transverse(Parser& p, Material& material) {
   if (p.finish()) material.elastic = elastic;
 }
 
+// Alike in all directions, or across the yarn only.
+constexpr std::array<Word<bool>, 2> elastic_words{{{"isotropic", false}, {"transverse", true}}};
+
 void read_elastic(Parser& p, Material& material, std::string_view) {
-  constexpr std::array<Word<bool>, 2> laws{{{"isotropic", false}, {"transverse", true}}};
-  const auto is_transverse = p.choice("elastic law", laws);
+  const auto is_transverse = p.choice("elastic law", elastic_words);
   if (!is_transverse) return;
   *is_transverse ? read_transverse(p, material) : read_isotropic(p, material);
+}
+
+// Compression is a positive number, too.
+std::optional<double> a_strength(Parser& p, std::string_view what) {
+  return p.positive(fmt::format("the strength {}", what), fabric::strength_quantity);
+}
+
+void read_isotropic_strength(Parser& p, Material& material) {
+  fabric::IsotropicStrength strength;
+  const auto tension = a_strength(p, "in tension"), compression = a_strength(p, "in compression");
+  if (p.more()) strength.shear = a_strength(p, "in shear");
+  if (!p.finish()) return;
+  strength.tension = *tension;
+  strength.compression = *compression;
+  material.strength = strength;
+}
+
+// Without the one in shear across it is that of a crack at 45 degrees to the pressure: YC / 2.
+void read_transverse_strength(Parser& p, Material& material) {
+  const auto tension = a_strength(p, "along in tension (XT)");
+  const auto compression = a_strength(p, "along in compression (XC)");
+  std::optional<fabric::TransverseStrength::Across> across;
+  if (p.more()) {
+    const auto yt = a_strength(p, "across in tension (YT)"), yc = a_strength(p, "across in compression (YC)");
+    const auto s12 = a_strength(p, "in shear along (S12)");
+    const auto s23 = p.more() ? a_strength(p, "in shear across (S23)") : std::nullopt;
+    if (yt && yc && s12) across = {*yt, *yc, *s12, s23.value_or(*yc / 2)};
+  }
+  if (p.finish()) material.strength = fabric::TransverseStrength{*tension, *compression, across};
+}
+
+void read_strength(Parser& p, Material& material, std::string_view) {
+  const auto is_transverse = p.choice("kind of strength", elastic_words);
+  if (!is_transverse) return;
+  *is_transverse ? read_transverse_strength(p, material) : read_isotropic_strength(p, material);
 }
 
 void read_expansion(Parser& p, Material& material, std::string_view) {
@@ -269,6 +306,7 @@ void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       {{"density", into(&Material::density, a_positive("the density", fabric::density_quantity))},
        {"packing", read_packing<Material>},
        {"elastic", read_elastic},
+       {"strength", read_strength},
        {"expansion", read_expansion},
        {"conductivity", into_transport(&Material::conductivity, fabric::conductivity_quantity,
                                        "an insulator has a small one, still air 0.026")},

@@ -24,8 +24,14 @@ constexpr std::array values = {
     Value{"S", "twist plies draft curve",
           "Left-handed; of a twill: the diagonal rises to the left; of a curve: it turns both ways."},
     Value{"rotate", "twist", "The section turns with the twist, too."},
-    Value{"isotropic", "elastic", "`isotropic E NU`: modulus and Poisson's ratio."},
-    Value{"transverse", "elastic", "`transverse E1 E2 NU12 G12 NU23`: alike across the yarn."},
+    Value{
+        "isotropic", "elastic strength",
+        "Elastic: `isotropic E NU`, modulus and Poisson's ratio. Strength: `isotropic T C [S]`, in tension, "
+        "compression and shear."},
+    Value{"transverse", "elastic strength",
+          "Alike across the yarn. Elastic: `transverse E1 E2 NU12 G12 NU23`. Strength: `transverse XT XC [YT "
+          "YC "
+          "S12 [S23]]`; without S23 it is YC / 2."},
 
     Value{"warp", "role", "Along the cloth."},
     Value{"weft", "role", "Across the cloth."},

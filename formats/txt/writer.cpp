@@ -145,6 +145,17 @@ void write_interface(Lines& out, const fabric::Interface& interface) {
   out.line(1, "end");
 }
 
+void write_strength(Lines& out, const fabric::Material& material) {
+  if (const auto* same = std::get_if<fabric::IsotropicStrength>(&material.strength)) {
+    out.line(1, "strength isotropic").value(same->tension).value(same->compression);
+    if (same->shear) out.value(*same->shear);
+  }
+  if (const auto* two = std::get_if<fabric::TransverseStrength>(&material.strength)) {
+    out.line(1, "strength transverse").value(two->tension).value(two->compression);
+    if (const auto& a = two->across) out.value(a->tension).value(a->compression).value(a->s12).value(a->s23);
+  }
+}
+
 void write_material(Lines& out, const fabric::Material& material) {
   out.blank_line();
   out.line(0, "material").name(material.name);
@@ -154,6 +165,7 @@ void write_material(Lines& out, const fabric::Material& material) {
     out.line(1, "elastic isotropic").value(isotropic->modulus).value(isotropic->poisson);
   if (const auto* e = std::get_if<fabric::TransverseElastic>(&material.elastic))
     out.line(1, "elastic transverse").value(e->e1).value(e->e2).value(e->nu12).value(e->g12).value(e->nu23);
+  write_strength(out, material);
   if (material.expansion)
     out.line(1, "expansion").value(material.expansion->along).value(material.expansion->across);
   write_transport(out, "conductivity", material.conductivity);

@@ -153,6 +153,10 @@ void write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
   std::vector<Vec3> along = mesh.along, across = mesh.across;
   std::vector<double> fractions = mesh.fibre_fraction;
   OfInterfaces others = of_interfaces(mesh);
+  // Layers of wedges are no interfaces.
+  const std::size_t wedges = mesh.layers.wedges.size();
+  others.interface.insert(others.interface.end(), wedges, -1);
+  others.region.resize(others.region.size() + wedges);
   const std::size_t more = others.interface.size(), all = mesh.elements.size() + more;
   for (const std::optional<std::size_t>& region : others.region) {
     const bool is_yarns = region && mesh.regions[*region].kind == fem::Region::Kind::yarn;
@@ -167,7 +171,7 @@ void write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
   write_array(text, "across", flat(across), 3);
   if (!fractions.empty()) write_array(text, "fibre_fraction", fractions);
   if (!materials.empty()) write_array(text, "material", materials);
-  if (more > 0) {
+  if (more > wedges) {
     others.interface.insert(others.interface.begin(), mesh.elements.size(), -1);
     write_array(text, "interface", others.interface);
   }
@@ -217,6 +221,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
     interfaces.push_back(mesh.regions[interface.first].name + " and " + mesh.regions[interface.second].name);
   Cells cells = cells_of(mesh);
   (mesh.joining == fem::Joining::cohesive ? add_wedges : add_triangles)(cells, mesh);
+  for (const auto& n : mesh.layers.wedges) cells.add(13, std::array{n[0], n[2], n[1], n[3], n[5], n[4]});
   write_grid(text, names, interfaces, mesh.nodes, cells);
   text << "      <CellData Scalars=\"yarn\">\n";
   write_cell_data(text, mesh);
@@ -266,6 +271,7 @@ const Descriptor& descriptor() {
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 2,
                                   .order_of_pores = 2,
+                                  .has_layers = true,
                                   .write_gap_map = write_gaps};
   return self;
 }

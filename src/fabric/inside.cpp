@@ -76,11 +76,10 @@ TwoSteps steps_of(const Placement& placement) {
   const Matrix& m = placement.linear;
   TwoSteps steps;
   // A place alone is part of the plan: yarns of one shape stay that.
-  if (m == Matrix::Identity()) {
-    steps.line = placement;
-  } else if (is_rigid(m)) {
+  const bool is_place_alone = m == Matrix::Identity();
+  if (!is_place_alone && is_rigid(m)) {
     steps.body = placement;
-  } else if (m.determinant() > 0.0) {
+  } else if (is_place_alone || m.determinant() > 0.0) {
     steps.line = placement;
   } else {
     // A section is not mirrored by sweeping it.
@@ -182,7 +181,7 @@ class UseCheck {
     // Its own, used or not.
     for (const NamedBlock& block : fabric.blocks)
       if (block.home == nullptr)
-        if (const Result<std::uint64_t> within = copies_of(fabric, block); !within) return within;
+        if (Result<std::uint64_t> within = copies_of(fabric, block); !within) return within;
     std::uint64_t all = 0;
     for (const Item& item : fabric.items) {
       const auto* const use = std::get_if<Use>(&item);
@@ -217,7 +216,7 @@ class UseCheck {
                    fmt::format("blocks use each other in a circle: {}'{}'", circle, block.name));
     }
     open_.push_back(&block);
-    const Result<std::uint64_t> copies = copies_in(inside(around, block));
+    Result<std::uint64_t> copies = copies_in(inside(around, block));
     open_.pop_back();
     if (copies) known_[key] = *copies;
     return copies;
@@ -232,9 +231,10 @@ Status check_materials(const Fabric& fabric, std::map<std::string, const Materia
   for (const Material& material : fabric.materials) {
     const Material* const other = known.try_emplace(material.name, &material).first->second;
     if (material.density != other->density || material.packing != other->packing ||
-        material.elastic != other->elastic || material.expansion != other->expansion ||
-        material.conductivity != other->conductivity || material.diffusivity != other->diffusivity ||
-        material.permittivity != other->permittivity || material.interface != other->interface)
+        material.elastic != other->elastic || material.strength != other->strength ||
+        material.expansion != other->expansion || material.conductivity != other->conductivity ||
+        material.diffusivity != other->diffusivity || material.permittivity != other->permittivity ||
+        material.interface != other->interface)
       return error(Kind::malformed,
                    fmt::format("the material '{}' is another one elsewhere: give one of them another "
                                "name",

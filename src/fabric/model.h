@@ -114,12 +114,32 @@ struct Interface {
   bool operator==(const Interface&) const = default;
 };
 
+// The largest stresses, all > 0, MPa. Of a material alike in all directions.
+struct IsotropicStrength {
+  double tension = 0, compression = 0;
+  std::optional<double> shear;
+  bool operator==(const IsotropicStrength&) const = default;
+};
+// 1 is along the yarn.
+struct TransverseStrength {
+  double tension = 0, compression = 0;  // along
+  struct Across {
+    double tension = 0, compression = 0;
+    double s12 = 0;  // shear along
+    double s23 = 0;  // shear across
+    bool operator==(const Across&) const = default;
+  };
+  std::optional<Across> across;  // none: of fibres
+  bool operator==(const TransverseStrength&) const = default;
+};
+
 struct Material {
   std::string name;
   TextPlace place;
   std::optional<double> density;  // g/cm3
   std::optional<double> packing;  // share of a yarn's section that such fibres fill, 0 < packing <= 1
   std::variant<std::monostate, IsotropicElastic, TransverseElastic> elastic;
+  std::variant<std::monostate, IsotropicStrength, TransverseStrength> strength;
   std::optional<Expansion> expansion;
   std::optional<Transport> conductivity;  // of heat, W/(m K)
   std::optional<Transport> diffusivity;   // mm2/s

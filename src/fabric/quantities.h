@@ -24,6 +24,7 @@ inline constexpr Quantity linear_density_quantity = {"a linear density", "g/km (
 inline constexpr Quantity packing_quantity = {"a packing", "of the section", 0.01, 1};
 inline constexpr Quantity twist_quantity = {"a twist", "turns per metre", 0, 1e6, {}, 1, Measure::twist};
 inline constexpr Quantity modulus_quantity = {"a modulus", "MPa", 1e-9, 1e7, "Pa", 1e-6, Measure::modulus};
+inline constexpr Quantity strength_quantity = {"a strength", "MPa", 1e-6, 1e6, "Pa", 1e-6, Measure::modulus};
 inline constexpr Quantity expansion_quantity = {"an expansion",    "1/K", -0.01, 0.01, "1e-6/K", 1e-6,
                                                 Measure::expansion};
 inline constexpr Quantity conductivity_quantity = {

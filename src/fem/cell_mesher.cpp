@@ -35,6 +35,7 @@ class CellMesher {
   Status prepare();
   Status make_surfaces();
   Status fill_regions();
+  static void count_below(Mesh& mesh);
   Status finish(Mesh& mesh);
   [[nodiscard]] Message located(const Message& message) const { return message.placed({}, fabric_.file); }
   [[nodiscard]] std::string yarns_near(const Vec3& at) const;
@@ -195,6 +196,13 @@ Status CellMesher::check_joining(Mesh& mesh) const {
   return {};
 }
 
+// Layers have changed tetrahedra since it was counted.
+void CellMesher::count_below(Mesh& mesh) {
+  mesh.angles->below = 0;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    mesh.angles->below += shape_of(mesh, e).min_dihedral < mesh.angles->wanted ? 1 : 0;
+}
+
 Status CellMesher::finish(Mesh& mesh) {
   const double scale = millimetres_per(fabric_.units), cube = scale * scale * scale;
   const std::vector<double>& volumes = block_->skin.volumes;
@@ -221,9 +229,13 @@ Status CellMesher::finish(Mesh& mesh) {
   if (Status complete = complete_cell(mesh, cell_mm, options_.periodic); !complete)
     return located(complete.error());
   if (options_.pores) add_face_patches(mesh);
+  if (options_.layers.count > 0)
+    if (Status added = add_layers(mesh, {options_.layers.count, scale * options_.layers.thickness}); !added)
+      return located(added.error());
   if (Status joined = check_joining(mesh); !joined) return joined;
   measure(mesh);
   mesh.angles = angles_;
+  if (options_.layers.count > 0) count_below(mesh);
   if (Status sound = check_elements(mesh, fabric_.units); !sound) return located(sound.error());
   return {};
 }

@@ -9,6 +9,7 @@
 #include "core/diagnostics.h"
 #include "fabric/model.h"
 #include "fem/block.h"
+#include "fem/layers.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
@@ -18,6 +19,7 @@ struct CellMeshOptions : MeshOptions {
   double coarsest = 0;          // file units: to which edges may grow away from the yarns; 0: as on the yarns
   bool matrix = true;           // false: only the yarns, cut flush
   bool pores = false;           // with `matrix`: only that, with patches (fem/pores.h)
+  LayerOptions layers{};        // with `pores`, order 1: along the walls; count 0: none; file units
   // File units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none.
   double bond = 0;
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles

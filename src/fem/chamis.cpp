@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "fem/fibre.h"
 #include "fem/materials.h"
@@ -28,6 +29,58 @@ Result<fabric::Material> matrix_of(const Mesh& mesh) {
 
 constexpr int bins = 100;
 
+struct AlongFibres {
+  double tension = 0, compression = 0;
+};
+std::optional<AlongFibres> strength_along(const fabric::Material& fibre) {
+  if (const auto* same = std::get_if<fabric::IsotropicStrength>(&fibre.strength))
+    return AlongFibres{same->tension, same->compression};
+  if (const auto* two = std::get_if<fabric::TransverseStrength>(&fibre.strength))
+    return AlongFibres{two->tension, two->compression};
+  return {};
+}
+
+// With a strength in shear.
+const fabric::IsotropicStrength* strength_of_matrix(const fabric::Material& matrix) {
+  const auto* same = std::get_if<fabric::IsotropicStrength>(&matrix.strength);
+  return same != nullptr && same->shear ? same : nullptr;
+}
+
+std::optional<fabric::TransverseStrength> strength_of_yarn(const fabric::Material& fibre,
+                                                           const fabric::Material& matrix, double fraction) {
+  const std::optional<AlongFibres> along = strength_along(fibre);
+  const fabric::IsotropicStrength* of_matrix = strength_of_matrix(matrix);
+  if (!along || of_matrix == nullptr) return {};
+  const fabric::TransverseElastic f = as_transverse(fibre), m = as_transverse(matrix);
+  const auto share = [&](double soft, double stiff) {
+    return 1 - (std::sqrt(fraction) - fraction) * (1 - soft / stiff);
+  };
+  const double across = share(m.e1, f.e2);
+  fabric::TransverseStrength::Across result = {.tension = across * of_matrix->tension,
+                                               .compression = across * of_matrix->compression,
+                                               .s12 = share(m.g12, f.g12) * *of_matrix->shear};
+  result.s23 = result.compression / 2;
+  const double microbuckling = m.g12 / (1 - fraction * (1 - m.g12 / f.g12));
+  return fabric::TransverseStrength{
+      .tension = fraction * along->tension,
+      .compression = std::min(
+          {fraction * along->compression, 10 * result.s12 + 2.5 * of_matrix->tension, microbuckling}),
+      .across = result};
+}
+
+// Fibres whose strengths come to nothing.
+void warn_of_lost_strengths(const Mesh& mesh, const fabric::Material& matrix, Diagnostics& diagnostics) {
+  if (strength_of_matrix(matrix) != nullptr) return;
+  for (const fabric::Material& material : mesh.materials)
+    if (material.name != matrix.name && strength_along(material))
+      diagnostics.add(warning(
+          Kind::geometry,
+          fmt::format(
+              "yarns of '{}' have no strength: it follows from that of their fibres only in a matrix "
+              "with one in tension, compression and shear: give '{}' a line `strength isotropic T C S`",
+              material.name, matrix.name)));
+}
+
 }  // namespace
 
 fabric::Material chamis(const fabric::Material& fibre, const fabric::Material& matrix, double fraction) {
@@ -47,6 +100,7 @@ fabric::Material chamis(const fabric::Material& fibre, const fabric::Material& m
   result.name = fibre.name;
   result.place = fibre.place;
   result.elastic = yarn;
+  if (const auto strength = strength_of_yarn(fibre, matrix, fraction)) result.strength = *strength;
   if (fibre.density && matrix.density) result.density = fraction * *fibre.density + rest * *matrix.density;
   if (fibre.expansion && matrix.expansion) {
     const double of_matrix = matrix.expansion->along;
@@ -61,6 +115,7 @@ fabric::Material chamis(const fabric::Material& fibre, const fabric::Material& m
 Status derive_yarn_stiffness(Mesh& mesh, Diagnostics& diagnostics) {
   const Result<fabric::Material> matrix = matrix_of(mesh);
   if (!matrix) return matrix.error();
+  warn_of_lost_strengths(mesh, *matrix, diagnostics);
   std::vector<fabric::Material> made;
   std::map<std::pair<std::string, int>, std::uint32_t> numbers;  // material and hundredths
   std::vector<std::uint32_t> of_element(mesh.elements.size(), 0);

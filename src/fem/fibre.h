@@ -36,13 +36,17 @@ double section_perimeter(const yarn::Body& body, double v);
 
 // Constants of a yarn (transverse isotropic) of a share `fraction` of fibres in a matrix: C. C. Chamis,
 // Simplified composite micromechanics equations for hygral, thermal and mechanical properties, NASA TM-83320
-// (1983); nu23 follows from E2 and G23. Precondition: both have elastic constants, the matrix isotropic ones;
-// 0 < fraction < 1.
+// (1983); nu23 follows from E2 and G23. Strengths where the fibres have some (those along them count) and the
+// matrix all three: C. C. Chamis, Simplified composite micromechanics equations for strength, fracture
+// toughness, impact resistance and environmental effects, NASA TM-83696 (1984); in compression along the
+// least of crushed fibres, shear and microbuckling; in shear across half of the one in compression.
+// Precondition: both have elastic constants, the matrix isotropic ones; 0 < fraction < 1.
 fabric::Material chamis(const fabric::Material& fibre, const fabric::Material& matrix, double fraction);
 
 // Gives each element of a yarn the constants of its own fibre fraction (rounded to hundredths: a material
 // each, named NAME_vf062), taking its material's as those of the fibres. Warnings: yarns whose fraction is
-// not known, or not between 0 and 1: they keep what they have. Error (geometry): no matrix, or one that is
+// not known, or not between 0 and 1: they keep what they have; fibres with strengths in a matrix without:
+// their yarns have none. Error (geometry): no matrix, or one that is
 // not isotropic.
 Status derive_yarn_stiffness(Mesh& mesh, Diagnostics& diagnostics);
 

@@ -63,9 +63,23 @@ void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice
 
 }  // namespace
 
+std::vector<Message> strengths_left_out(const std::vector<fabric::Material>& materials,
+                                        std::string_view format) {
+  const auto has_some = [](const fabric::Material& material) {
+    return !std::holds_alternative<std::monostate>(material.strength);
+  };
+  if (std::none_of(materials.begin(), materials.end(), has_some)) return {};
+  return {
+      warning(Kind::unsupported,
+              fmt::format("{} has no place for the strengths of materials, and is written without; of a unit "
+                          "cell's .inp deck `scripts/homogenize` finds what breaks first",
+                          format))};
+}
+
 std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials,
                                       const std::vector<CohesiveLaw>& laws) {
   std::vector<std::string> own;
+  own.reserve(materials.size() + laws.size());
   for (const fabric::Material& material : materials) own.push_back(material.name);
   for (const CohesiveLaw& law : laws) own.push_back(law.name);
   return unique_names(own, {.longest = 30, .begin = "M_"});

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -35,6 +36,10 @@ fabric::TransverseElastic as_transverse(const fabric::Material& material);
 
 // All zero of a material without elastic constants.
 Orthotropic orthotropic(const fabric::Material& material);
+
+// A warning where materials have strengths, for a format that has no place for them; else none.
+std::vector<Message> strengths_left_out(const std::vector<fabric::Material>& materials,
+                                        std::string_view format);
 
 // Names that every solver takes: letters, digits and underscores after a letter, at most 30, each only once
 // (case does not count).

@@ -166,12 +166,23 @@ struct Patch {
     open       // a face of the cell through which something may flow in or out
   };
   struct Side {
-    std::size_t element = 0, side = 0;  // index into element_sides() (fem/sides.h)
+    // Index into element_sides() (fem/sides.h). Wedges of layers are numbered behind Mesh::elements.
+    std::size_t element = 0, side = 0;
   };
   Kind kind = Kind::wall;
   std::string name;          // the yarn's; x_low, x_high; inlet_z, outlet_z (low and high)
   std::size_t opposite = 0;  // periodic: the patch whose k-th side is opposite the k-th
   std::vector<Side> sides;   // at least one
+};
+
+// Wedges along the walls of a pore space (fem/layers.h).
+struct WallLayers {
+  int count = 0;  // one over another; 0: none
+  std::vector<std::array<std::size_t, 6>>
+      wedges;                       // as Abaqus's C3D6: the first three nodes on the wall's side
+  std::vector<std::size_t> under;   // of each `count` of them the tetrahedron that they stand on
+  double asked = 0, thickness = 0;  // of all together, mm: the means over the walls' nodes
+  double thinned = 0;  // share of the walls' nodes at which they are less than half as thick as was asked
 };
 
 struct Mesh {
@@ -198,6 +209,7 @@ struct Mesh {
   std::vector<Interface> interfaces;   // by their regions; empty where all are bonded
   std::vector<CohesiveLaw> laws;       // of cohesive ones
   std::vector<Patch> patches;          // of a pore space, whose only region is named "pores"; else empty
+  WallLayers layers;                   // of a pore space
   Physics physics = Physics::elastic;  // other ones: of a cell
   std::vector<Driver> drivers;
   std::vector<Equation> equations;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/readable.h"
+#include "fem/forming.h"
 
 namespace selvage::fem {
 namespace {
@@ -64,6 +65,7 @@ std::vector<std::string> common_names() {
   for (int k = 0; k <= 2; ++k) names.push_back("CurvatureDriver" + std::to_string(k));
   for (int k = 0; k <= 3; ++k) names.push_back("BeamDriver" + std::to_string(k));
   for (int k = 0; k <= 2; ++k) names.push_back("GradientDriver" + std::to_string(k));
+  for (const std::string_view name : names_of_rigid_parts()) names.emplace_back(name);
   return names;
 }
 

@@ -175,6 +175,12 @@ void join_neighbours(const Mesh& mesh, Parts& parts) {
 
 // Over periodic faces, and where an open pair is reached on both sides.
 void join_faces(const Mesh& mesh, Parts& parts) {
+  // Layers belong to the tetrahedra under them.
+  const auto own_part = [&](const Patch::Side& side) {
+    const std::size_t count = mesh.elements.size();
+    if (side.element < count) return side.element;
+    return mesh.layers.under[(side.element - count) / static_cast<std::size_t>(mesh.layers.count)];
+  };
   const auto axis_of = [](const Patch& patch) {
     return static_cast<std::size_t>(patch.kind == Patch::Kind::periodic ? patch.name.front() - 'x'
                                                                         : patch.name.back() - 'x');
@@ -184,13 +190,13 @@ void join_faces(const Mesh& mesh, Parts& parts) {
     Offset step{};
     step[axis_of(patch)] = 1;
     for (std::size_t k = 0; k < patch.sides.size(); ++k)
-      parts.join(patch.sides[k].element, mesh.patches[patch.opposite].sides[k].element, step);
+      parts.join(own_part(patch.sides[k]), own_part(mesh.patches[patch.opposite].sides[k]), step);
   }
   std::map<std::pair<std::size_t, std::size_t>, int> reached;  // of a root and an axis: 1 low, 2 high
   for (const Patch& patch : mesh.patches) {
     if (patch.kind != Patch::Kind::open) continue;
     for (const Patch::Side& side : patch.sides)
-      reached[{parts.root_of(side.element), axis_of(patch)}] |= patch.name.starts_with("inlet") ? 1 : 2;
+      reached[{parts.root_of(own_part(side)), axis_of(patch)}] |= patch.name.starts_with("inlet") ? 1 : 2;
   }
   for (const auto& [where, ends] : reached)
     if (ends == 3) parts.crossed(where.first)[where.second] = true;
@@ -217,6 +223,11 @@ Passages find_passages(const Mesh& mesh) {
         passages.pocket_places.push_back(mesh.nodes[mesh.elements[e][0]]);
     }
     if (at->second) passages.pocket_volume += volume_of(mesh, e);
+  }
+  for (std::size_t w = 0; w < mesh.layers.wedges.size(); ++w) {
+    const std::size_t under = mesh.layers.under[w / static_cast<std::size_t>(mesh.layers.count)];
+    if (is_pocket.at(parts.root_of(under)))
+      passages.pocket_volume += volume_of(mesh, mesh.elements.size() + w);
   }
   return passages;
 }

@@ -48,8 +48,18 @@ std::array<Vec3, 10> nodes_of(const Mesh& mesh, std::size_t element) {
   return nodes;
 }
 
+bool is_of_hexahedra(const Mesh& mesh, std::size_t element) {
+  return mesh.shape == Mesh::Shape::hexahedron || element >= mesh.elements.size();
+}
+
 EightNodes eight_nodes_of(const Mesh& mesh, std::size_t element) {
   EightNodes nodes;
+  if (element >= mesh.elements.size()) {
+    constexpr std::array<std::size_t, 8> of_wedge = {0, 1, 2, 2, 3, 4, 5, 5};
+    const auto& wedge = mesh.layers.wedges[element - mesh.elements.size()];
+    for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = mesh.nodes[wedge[of_wedge[k]]];
+    return nodes;
+  }
   for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = mesh.nodes[mesh.elements[element][k]];
   return nodes;
 }
@@ -125,8 +135,9 @@ double quadratic_volume(const std::array<Vec3, 10>& nodes) {
 }
 
 ElementShape shape_of(const Mesh& mesh, std::size_t element) {
-  if (mesh.shape == Mesh::Shape::hexahedron)
-    return shape_of_hexahedron(eight_nodes_of(mesh, element), mesh.is_wedge(element));
+  if (is_of_hexahedra(mesh, element))
+    return shape_of_hexahedron(eight_nodes_of(mesh, element),
+                               element >= mesh.elements.size() || mesh.is_wedge(element));
   const std::array<Vec3, 10> nodes = nodes_of(mesh, element);
   ElementShape shape = shape_of({nodes[0], nodes[1], nodes[2], nodes[3]});
   if (mesh.order == 2) shape.scaled_jacobian *= least_jacobian_share(nodes);
@@ -134,7 +145,7 @@ ElementShape shape_of(const Mesh& mesh, std::size_t element) {
 }
 
 double volume_of(const Mesh& mesh, std::size_t element) {
-  if (mesh.shape == Mesh::Shape::hexahedron) return volume_of_hexahedron(eight_nodes_of(mesh, element));
+  if (is_of_hexahedra(mesh, element)) return volume_of_hexahedron(eight_nodes_of(mesh, element));
   const std::array<Vec3, 10> nodes = nodes_of(mesh, element);
   return mesh.order == 1 ? six_volumes(nodes) / 6 : quadratic_volume(nodes);
 }
@@ -173,6 +184,8 @@ void measure(Mesh& mesh) {
         sum / static_cast<double>(region.last_element - region.first_element);
     jacobians += sum;
   }
+  for (std::size_t w = 0; w < mesh.layers.wedges.size(); ++w)
+    mesh.regions.front().volume += volume_of(mesh, mesh.elements.size() + w);
   mesh.quality.mean_scaled_jacobian =
       jacobians / static_cast<double>(std::max<std::size_t>(mesh.elements.size(), 1));
   std::sort(worst.begin(), worst.end(), worse);

@@ -26,8 +26,8 @@ double least_jacobian_share(const std::array<Vec3, 10>& nodes);
 // degree 3).
 double quadratic_volume(const std::array<Vec3, 10>& nodes);
 
-// Of one element of a mesh: as above, the scaled Jacobian of a ten-node element times its least share; of
-// hexahedra and wedges as in hexahedron.h.
+// Of one element of a mesh, or of a wedge of its layers, numbered behind them: as above, the scaled Jacobian
+// of a ten-node element times its least share; of hexahedra and wedges as in hexahedron.h.
 ElementShape shape_of(const Mesh& mesh, std::size_t element);
 
 // The mean of an element's corners.

@@ -41,13 +41,19 @@ std::span<const ElementSide> element_sides(Mesh::Shape shape) {
 std::span<const ElementSide> element_sides(const Mesh& mesh, std::size_t element) {
   static constexpr std::array<ElementSide, 5> wedge = {
       {{0, 2, 1, 1}, {4, 5, 6, 6}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 0, 4, 6}}};
+  // The same of six nodes.
+  static constexpr std::array<ElementSide, 5> layer = {
+      {{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
+  if (element >= mesh.elements.size()) return layer;
   if (mesh.is_wedge(element)) return wedge;
   return element_sides(mesh.shape);
 }
 
 ElementSide side_nodes(const Mesh& mesh, std::size_t element, std::size_t side) {
   ElementSide nodes = element_sides(mesh, element)[side];
-  for (std::size_t& node : nodes) node = mesh.elements[element][node];
+  const std::size_t count = mesh.elements.size();
+  for (std::size_t& node : nodes)
+    node = element < count ? mesh.elements[element][node] : mesh.layers.wedges[element - count][node];
   return nodes;
 }
 

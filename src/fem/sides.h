@@ -13,7 +13,8 @@ namespace selvage::fem {
 // Corners of an element's sides, counter-clockwise seen from outside; sides in Abaqus's order S1, S2, ..
 // (also that of LS-DYNA's and ANSYS's manuals for the tetrahedron's), as indices of its nodes.
 std::span<const ElementSide> element_sides(Mesh::Shape shape);
-// The same of an element, which may be a wedge: its five sides, as of Abaqus's C3D6.
+// The same of an element, which may be a wedge: its five sides, as of Abaqus's C3D6. Wedges of layers are
+// numbered behind the elements.
 std::span<const ElementSide> element_sides(const Mesh& mesh, std::size_t element);
 
 // The nodes at the corners of a side.

@@ -56,7 +56,8 @@ Mat3 strain_of(const std::vector<Vec3>& places, const std::vector<Vec3>& moved) 
   return 0.5 * (gradient + gradient.transpose());
 }
 
-constexpr std::array<std::array<int, 2>, 6> places_of_six = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
+constexpr std::array<std::array<int, 2>, 6> places_of_six = {
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
 
 using Six = Eigen::Matrix<double, 6, 1>;
 Six six_of(const Mat3& tensor) {
@@ -67,7 +68,8 @@ Six six_of(const Mat3& tensor) {
 Mat3 tensor_of(const Six& six) {
   Mat3 tensor;
   for (int k = 0; k < 6; ++k)
-    tensor(places_of_six[k][0], places_of_six[k][1]) = tensor(places_of_six[k][1], places_of_six[k][0]) = six[k];
+    tensor(places_of_six[k][0], places_of_six[k][1]) = tensor(places_of_six[k][1], places_of_six[k][0]) =
+        six[k];
   return tensor;
 }
 
@@ -89,13 +91,17 @@ Mat3 stress_of(const Mat3& strain, const SolvedDeck::Section& section, const Sol
 class NodeMeans {
  public:
   NodeMeans(const FieldMesh& mesh, int components)
-      : mesh_(mesh), components_(components), sums_(mesh.nodes.size() * static_cast<std::size_t>(components)), counts_(mesh.nodes.size()) {}
+      : mesh_(mesh),
+        components_(components),
+        sums_(mesh.nodes.size() * static_cast<std::size_t>(components)),
+        counts_(mesh.nodes.size()) {}
   template <class Values>
   void add(const FieldMesh::Element& element, const Values& values) {
     for (std::size_t c = 0; c < corner_count(element.shape); ++c) {
       const std::uint32_t node = element.corners[c];
       ++counts_[node];
-      for (int k = 0; k < components_; ++k) sums_[node * static_cast<std::size_t>(components_) + static_cast<std::size_t>(k)] += values[k];
+      for (int k = 0; k < components_; ++k)
+        sums_[node * static_cast<std::size_t>(components_) + static_cast<std::size_t>(k)] += values[k];
     }
   }
   [[nodiscard]] Field field(std::string name, int step) const {
@@ -130,7 +136,8 @@ Field directions_at_nodes(const FieldMesh& mesh, const std::vector<std::optional
   }
   Field made{"along", true, 3, {}, 0};
   for (const Vec3& sum : sums)
-    for (const double x : sum) made.values.push_back(sum.norm() > 0 ? static_cast<float>(x / sum.norm()) : no_value);
+    for (const double x : sum)
+      made.values.push_back(sum.norm() > 0 ? static_cast<float>(x / sum.norm()) : no_value);
   return made;
 }
 
@@ -139,9 +146,9 @@ const SolvedDeck::Element* element_of(const SolvedDeck& deck, const FieldMesh& m
   if (found == deck.elements.end()) return nullptr;
   const FieldMesh::Element& element = mesh.elements[e];
   const std::size_t count = corner_count(element.shape);
-  std::vector<long> theirs(found->second.nodes.begin(),
-                           found->second.nodes.begin() +
-                               static_cast<std::ptrdiff_t>(std::min(count, found->second.nodes.size()))),
+  std::vector<long> theirs(
+      found->second.nodes.begin(),
+      found->second.nodes.begin() + static_cast<std::ptrdiff_t>(std::min(count, found->second.nodes.size()))),
       own;
   for (std::size_t c = 0; c < count; ++c) own.push_back(mesh.node_numbers[element.corners[c]]);
   std::sort(theirs.begin(), theirs.end());
@@ -150,8 +157,8 @@ const SolvedDeck::Element* element_of(const SolvedDeck& deck, const FieldMesh& m
 }
 
 // Strains and stresses of one step, in place of the solver's.
-Status reckon(const SolvedDeck& deck, const std::vector<const SolvedDeck::Element*>& elements, FieldMesh& mesh,
-              const Field& moved, double warming) {
+Status reckon(const SolvedDeck& deck, const std::vector<const SolvedDeck::Element*>& elements,
+              FieldMesh& mesh, const Field& moved, double warming) {
   std::unordered_map<long, std::size_t> node_of;
   for (std::size_t k = 0; k < mesh.node_numbers.size(); ++k) node_of.try_emplace(mesh.node_numbers[k], k);
   NodeMeans strains(mesh, 6), stresses(mesh, 6);
@@ -160,9 +167,10 @@ Status reckon(const SolvedDeck& deck, const std::vector<const SolvedDeck::Elemen
     for (const long number : elements[e]->nodes) {
       const auto node = node_of.find(number);
       if (node == node_of.end())
-        return error(Kind::malformed, fmt::format("the results have no node {} of the deck's element {}: they are "
-                                                  "of another deck",
-                                                  number, mesh.element_numbers[e]));
+        return error(Kind::malformed,
+                     fmt::format("the results have no node {} of the deck's element {}: they are "
+                                 "of another deck",
+                                 number, mesh.element_numbers[e]));
       places.push_back(mesh.nodes[node->second]);
       ways.push_back(vector_at(moved, node->second));
     }
@@ -193,8 +201,8 @@ void part_regions(FieldMesh& mesh) {
       std::uint32_t& region = region_of[corner];
       if (region == std::numeric_limits<std::uint32_t>::max()) region = element.region;
       if (region == element.region) continue;
-      const auto [copy, is_new] = copies.try_emplace({corner, element.region},
-                                                     static_cast<std::uint32_t>(count + copied.size()));
+      const auto [copy, is_new] =
+          copies.try_emplace({corner, element.region}, static_cast<std::uint32_t>(count + copied.size()));
       if (is_new) copied.push_back(corner);
       corner = copy->second;
     }
@@ -217,18 +225,21 @@ Status apply(const SolvedDeck& deck, FieldMesh& mesh) {
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     elements.push_back(element_of(deck, mesh, e));
     if (elements.back() == nullptr)
-      return error(Kind::malformed, fmt::format("the deck has no element {} of these nodes: it is not the one that "
-                                                "was solved",
-                                                mesh.element_numbers[e]));
+      return error(Kind::malformed,
+                   fmt::format("the deck has no element {} of these nodes: it is not the one that "
+                               "was solved",
+                               mesh.element_numbers[e]));
     if (deck.sections[elements.back()->section].is_oriented) directions[e] = elements.back()->along;
   }
   std::vector<double> warmings(mesh.steps.size());
   if (deck.steps.size() == mesh.steps.size()) {
     for (std::size_t k = 0; k < warmings.size(); ++k) warmings[k] = deck.steps[k].warming;
-  } else if (std::any_of(deck.steps.begin(), deck.steps.end(), [](const auto& step) { return step.warming != 0; })) {
-    return error(Kind::unsupported, fmt::format("the deck has {}, the results have {}: which temperature they are of "
-                                                "is not known",
-                                                counted(deck.steps.size(), "step"), counted(mesh.steps.size(), "set")));
+  } else if (std::any_of(deck.steps.begin(), deck.steps.end(),
+                         [](const auto& step) { return step.warming != 0; })) {
+    return error(Kind::unsupported,
+                 fmt::format("the deck has {}, the results have {}: which temperature they are of "
+                             "is not known",
+                             counted(deck.steps.size(), "step"), counted(mesh.steps.size(), "set")));
   }
   mesh.regions = deck.regions;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) mesh.elements[e].region = elements[e]->region;
@@ -237,13 +248,15 @@ Status apply(const SolvedDeck& deck, FieldMesh& mesh) {
   for (const Field& field : mesh.fields)
     if (field.name == "DISP" && field.components == 3) moved.push_back(field);
   for (const Field& field : moved)
-    if (Status done = reckon(deck, elements, mesh, field, warmings[static_cast<std::size_t>(field.step) - 1]); !done.ok())
+    if (Status done = reckon(deck, elements, mesh, field, warmings[static_cast<std::size_t>(field.step) - 1]);
+        !done.ok())
       return done;
   if (std::any_of(directions.begin(), directions.end(), [](const auto& one) { return one.has_value(); }))
     mesh.fields.push_back(directions_at_nodes(mesh, directions));
   if (deck.steps.size() == mesh.steps.size())
     for (std::size_t k = 0; k < warmings.size(); ++k)
-      if (!deck.steps[k].title.empty()) mesh.steps[k] = fmt::format("step {}, {}", k + 1, deck.steps[k].title);
+      if (!deck.steps[k].title.empty())
+        mesh.steps[k] = fmt::format("step {}, {}", k + 1, deck.steps[k].title);
   return {};
 }
 

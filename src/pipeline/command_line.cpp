@@ -284,7 +284,8 @@ void of_a_picture(OptionTable& t) {
            Argument::text("NAME[.PART]"), &Options::field);
   t.option({view}, "--step", "results of this step, in the order of the file (default: the last)",
            Argument::whole(1, 1'000'000), &Options::step);
-  t.option({view}, "--range", "values of the ends of the colours, such as 0:250 (default: the least and the largest)",
+  t.option({view}, "--range",
+           "values of the ends of the colours, such as 0:250 (default: the least and the largest)",
            Argument::text("LOW:HIGH"), take_value_range)
       .goes_with("is of a field's values", "--field", "");
   t.option({view}, "--deformed",
@@ -293,11 +294,13 @@ void of_a_picture(OptionTable& t) {
   t.choice({view}, "--show-matrix",
            "of a unit cell's mesh: half is what lies behind a plane through the middle (default: half; whole "
            "with --yarns)",
-           "whole half none", &Options::shown_matrix, {ShownMatrix::whole, ShownMatrix::half, ShownMatrix::none});
-  t.option({view}, "--deck",
-           "the deck that results are of, which tells yarns, fibres and materials (default: the one beside them "
-           "under the same name)",
-           Argument::text("FILE.inp"), &Options::deck);
+           "whole half none", &Options::shown_matrix,
+           {ShownMatrix::whole, ShownMatrix::half, ShownMatrix::none});
+  t.option(
+      {view}, "--deck",
+      "the deck that results are of, which tells yarns, fibres and materials (default: the one beside them "
+      "under the same name)",
+      Argument::text("FILE.inp"), &Options::deck);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");
@@ -342,6 +345,51 @@ void of_a_mesh(OptionTable& t) {
          &Options::force);
 }
 
+void of_forming(OptionTable& t) {
+  t.begin("The explicit step");
+  constexpr std::string_view why = "is of an explicit step";
+  using enum fem::FormingLoad;
+  t.option({mesh}, "--deck",
+           "static: a small tension, or the load cases of a cell; explicit: the forming of dry cloth, with "
+           "general "
+           "contact and friction (to Abaqus and LS-DYNA)",
+           Argument::one_of("static explicit"),
+           [](Options& options, const std::string& text) {
+             return options.forming.wanted = text == "explicit", Status();
+           })
+      .goes_with("explicit is of dry yarns", "", "--matrix --pores --periodic --voxel")
+      .with_preset("static");
+  t.option(
+       {mesh}, "--load",
+       "biaxial: yarn ends at four edges move outwards; bias: a cloth that was cut at 45 degrees (--cut) is "
+       "pulled; frame: the edges are those of a picture frame; compaction: between two rigid plates",
+       Argument::one_of("biaxial bias frame compaction"),
+       [](Options& options, const std::string& text) {
+         for (const fem::FormingLoad load : {biaxial, bias, frame, compaction})
+           if (text == fem::name_of(load)) options.forming.load = load;
+         return Status();
+       })
+      .goes_with(why, "--deck", "")
+      .with_preset("biaxial");
+  t.option({mesh}, "--stroke",
+           "elongation, or how much thinner, in the input's unit; of --load frame the shear angle in degrees "
+           "(default: 1 %, bias 10 %, frame 30 degrees, compaction 20 %)",
+           Argument::positive(), into(&Options::forming, &FormingSettings::stroke))
+      .goes_with(why, "--deck", "");
+  t.option({mesh}, "--thickness", "instead of --stroke: between the plates at the end, in the input's unit",
+           Argument::positive(), into(&Options::forming, &FormingSettings::thickness))
+      .goes_with("is of --load compaction", "--load", "--stroke");
+  t.option({mesh}, "--friction", "Coulomb's coefficient of yarns on each other and on plates",
+           Argument::non_negative(), into(&Options::forming, &FormingSettings::friction))
+      .goes_with(why, "--deck", "")
+      .with_preset("0.3");
+  t.option(
+       {mesh}, "--duration",
+       "seconds that the step takes (default: 20 passages of a wave along the longest yarn, at most 5 m/s)",
+       Argument::positive(), into(&Options::forming, &FormingSettings::duration))
+      .goes_with(why, "--deck", "");
+}
+
 void of_a_cell(OptionTable& t) {
   t.begin("The unit cell");
   t.flag({convert, mesh}, "--cut", "yarns cut flush by the faces of the input's cell (convert: as solids)",
@@ -356,6 +404,16 @@ void of_a_cell(OptionTable& t) {
          &Options::pores)
       .goes_with("is the space that the yarns leave", "",
                  "--cut --matrix --voxel --interface --physics --yarn-stiffness");
+  t.option({mesh}, "--layers",
+           "with --pores: so many layers of wedges along the walls, each 1.2 times as thick as the one "
+           "before it (to OpenFOAM, Gmsh, VTK)",
+           Argument::whole(1, 100), &Options::layers)
+      .goes_with("is of walls round a fluid", "--pores", "");
+  t.option({mesh}, "--layer-thickness",
+           "of all these layers together, in the input's unit (default: two fifths of the edges there); less "
+           "where the space is narrow",
+           Argument::positive(), &Options::layer_thickness)
+      .goes_with("is of layers along walls", "--layers", "");
   t.flag({mesh}, "--periodic",
          "opposite faces of the cell get the same nodes, and equations between them (as its "
          "`periodic` says; without that word along every axis that can be)",
@@ -506,8 +564,9 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns,
-                             of_relaxing, of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
+    for (auto* const part :
+         {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
+          of_a_mesh, of_forming, of_a_cell, of_formats, of_running, of_learning})
       part(table);
     return table.take();
   }();

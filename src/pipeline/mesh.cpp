@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "fem/beams.h"
 #include "fem/mesher.h"
@@ -97,6 +98,8 @@ void take(Job& job, MadeMesh made, Meshes& all) {
     tell(job, fmt::format("{}: {}\n", job.input.path, hexahedra_in_words(*made.mesh)));
   else if (made.mesh->shape == fem::Mesh::Shape::tetrahedron)
     tell(job, fmt::format("{}: {}\n", job.input.path, tetrahedra_in_words(*made.mesh)));
+  if (!made.mesh->layers.wedges.empty())
+    tell(job, fmt::format("{}: {}\n", job.input.path, layers_in_words(*made.mesh, job.file_units())));
   tell_volumes(job, *made.mesh);
   if (!made.mesh->patches.empty()) tell_passages(job, *made.mesh);
   all.mesh = std::move(*made.mesh);
@@ -124,6 +127,30 @@ void take(Job& job, Result<fem::Raster> raster, Meshes& all) {
   job.report["voxels"] = raster_json(*raster);
   tell(job, fmt::format("{}: {}\n", job.input.path, raster_in_words(*raster)));
   all.raster = std::move(*raster);
+}
+
+// The explicit step of what was meshed, and what it will cost.
+void plan_forming(Job& job, Meshes& all) {
+  if (!all.mesh && !all.beams) return;
+  const FormingSettings& given = job.options.forming;
+  const double scale = millimetres_per(job.file_units());
+  const auto in_mm = [&](const std::optional<double>& length) {
+    return length ? std::optional(*length * scale) : std::nullopt;
+  };
+  fem::FormingOptions options = {.load = given.load,
+                                 .stroke = in_mm(given.stroke),
+                                 .thickness = in_mm(given.thickness),
+                                 .friction = given.friction,
+                                 .duration = given.duration,
+                                 .file = job.input.path};
+  if (given.load == fem::FormingLoad::frame) options.stroke = given.stroke;  // an angle
+  const std::span<const double> radii =
+      all.beams ? std::span<const double>(all.beams->radii) : std::span<const double>();
+  Result<fem::Forming> forming = fem::plan_forming(all.beams ? all.beams->mesh : *all.mesh, radii, options);
+  if (!forming) return job.say(forming.error());
+  job.report["mesh"]["explicit"] = forming_json(*forming);
+  tell(job, fmt::format("{}: {}\n", job.input.path, forming_in_words(*forming)));
+  all.forming = std::move(*forming);
 }
 
 // Of what the outputs ask for: empty where they ask for none, or it failed (it was said).
@@ -170,8 +197,9 @@ void mesh(Job& job) {
     return std::ranges::any_of(
         job.outputs, [&](const PlannedOutput& output) { return output.format->*writes != nullptr; });
   };
-  const Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
-                           is_wanted(&formats::Descriptor::write_raster));
+  Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
+                     is_wanted(&formats::Descriptor::write_raster));
+  if (options.forming.wanted && !job.has_failed()) plan_forming(job, made);
   if (!job.has_failed()) write_meshes(job, *outputs, made);
 }
 

@@ -87,6 +87,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   options.joining = given.joining;
   options.matrix = given.matrix;
   options.pores = given.pores;
+  options.layers = {given.layers, given.layer_thickness};
   if (given.bond) options.bond = bond_reach * job.gap;
   options.periodic = ready.periodic;
   options.physics = given.physics;

@@ -52,14 +52,16 @@ bool take_deck(Job& job, fem::FieldMesh& mesh) {
   const std::string path =
       is_named ? job.options.deck : fs::path(job.input.path).replace_extension(".inp").string();
   if (is_named && mesh.element_numbers.empty())
-    return job.fail(error(Kind::unsupported, "--deck is of CalculiX's results (FRD): this file has no numbers of elements"));
+    return job.fail(error(Kind::unsupported,
+                          "--deck is of CalculiX's results (FRD): this file has no numbers of elements"));
   std::error_code failure;
   if (is_named || (!mesh.element_numbers.empty() && fs::is_regular_file(path, failure))) {
     std::vector<Message> messages;
     if (apply_deck(path, mesh, messages)) {
-      job.say(note(Kind::unsupported, fmt::format("stresses and strains are reckoned from the displacements and the "
-                                                  "materials of {}",
-                                                  in_quotes(path))));
+      job.say(note(Kind::unsupported,
+                   fmt::format("stresses and strains are reckoned from the displacements and the "
+                               "materials of {}",
+                               in_quotes(path))));
       return true;
     }
     for (Message& message : messages) {
@@ -72,9 +74,10 @@ bool take_deck(Job& job, fem::FieldMesh& mesh) {
     if (is_named) return false;
   }
   if (has_mixed_stresses(mesh))
-    job.say(warning(Kind::unsupported,
-                    "stresses and strains where two materials meet are means over both, as CalculiX writes them: "
-                    "with the deck (--deck FILE.inp, or beside the results) each has its own"));
+    job.say(
+        warning(Kind::unsupported,
+                "stresses and strains where two materials meet are means over both, as CalculiX writes them: "
+                "with the deck (--deck FILE.inp, or beside the results) each has its own"));
   return true;
 }
 

@@ -55,6 +55,15 @@ Json patch_json(const fem::Patch& patch) {
           {"sides", patch.sides.size()}};
 }
 
+Json layers_json(const fem::Mesh& mesh) {
+  double worst = 1;
+  for (std::size_t w = 0; w < mesh.layers.wedges.size(); ++w)
+    worst = std::min(worst, fem::shape_of(mesh, mesh.elements.size() + w).scaled_jacobian);
+  return {{"count", mesh.layers.count},           {"wedges", mesh.layers.wedges.size()},
+          {"asked_thickness", mesh.layers.asked}, {"thickness", mesh.layers.thickness},
+          {"thinned", mesh.layers.thinned},       {"min_scaled_jacobian", worst}};
+}
+
 void add_cell(Json& facts, const fem::Mesh& mesh) {
   double yarns = 0;
   for (const fem::Region& region : mesh.regions)
@@ -67,6 +76,7 @@ void add_cell(Json& facts, const fem::Mesh& mesh) {
   if (!mesh.patches.empty()) {
     facts["porosity"] = mesh.regions.front().volume / box;
     facts["patches"] = list_json(mesh.patches, patch_json);
+    if (!mesh.layers.wedges.empty()) facts["layers"] = layers_json(mesh);
     return;
   }
   facts["yarn_share"] = yarns / box;
@@ -222,6 +232,21 @@ std::string tetrahedra_in_words(const fem::Mesh& mesh) {
                      mesh.elements.size(), mesh.quality.min_dihedral, fem::first_percentile_angle(mesh));
 }
 
+std::string layers_in_words(const fem::Mesh& mesh, Unit units) {
+  const fem::WallLayers& layers = mesh.layers;
+  const std::string_view unit = name_of(units);
+  std::string text = fmt::format("{} wedges in {} layer{} along the walls, {:.3g} {} thick on average",
+                                 layers.wedges.size(), layers.count, layers.count == 1 ? "" : "s",
+                                 layers.thickness / millimetres_per(units), unit);
+  constexpr double nearly = 0.95;
+  if (layers.thickness < nearly * layers.asked)
+    text += fmt::format(" (of {:.3g} {}: neighbours are in the way, or --size is too small for it)",
+                        layers.asked / millimetres_per(units), unit);
+  if (layers.thinned > 0)
+    text += fmt::format("; less than half of that at {:.2g} % of the walls' nodes", 100 * layers.thinned);
+  return text;
+}
+
 std::string hexahedra_in_words(const fem::Mesh& mesh) {
   const std::size_t wedges = mesh.count_wedges();
   return fmt::format("{} hexahedra and {} wedges; scaled Jacobians from {:.2f}, {:.2f} on average",
@@ -287,6 +312,39 @@ std::string beams_in_words(const fem::BeamModel& beams) {
         fmt::format("; the section varies along {} and is that of each beam's middle: {} stations at most",
                     counted(varying, "yarn"), most);
   return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
+}
+
+Json forming_json(const fem::Forming& forming) {
+  const bool is_pressed = forming.load == fem::FormingLoad::compaction;
+  return {{"load", fem::name_of(forming.load)},
+          {"stroke", forming.stroke[0]},
+          {"stroke_y", if_true(forming.load == fem::FormingLoad::biaxial, forming.stroke[1])},
+          {"thickness", if_true(is_pressed, forming.thickness)},
+          {"final_thickness", if_true(is_pressed, forming.final_thickness)},
+          {"friction", forming.friction},
+          {"duration", forming.duration},
+          {"loose_ends", forming.loose_ends},
+          {"stable_increment", forming.stable.time},
+          {"stable_element", forming.stable.element + 1},
+          {"stable_length", forming.stable.length},
+          {"wave_speed", forming.stable.wave_speed},
+          {"increments", forming.increments()}};
+}
+
+std::string forming_in_words(const fem::Forming& forming) {
+  const fem::StableIncrement& stable = forming.stable;
+  std::string text = fmt::format(
+      "explicit step, {}: {:.3g} s in about {:.2g} increments of {:.3g} s (element {}: {:.3g} mm at {:.3g} "
+      "m/s; "
+      "no mass scaling), friction {:g}; it is quasi-static while the kinetic energy stays a few per cent of "
+      "the "
+      "internal one",
+      fem::name_of(forming.load), forming.duration, forming.increments(), stable.time, stable.element + 1,
+      stable.length, stable.wave_speed / 1000, forming.friction);
+  if (forming.loose_ends > 0)
+    text += fmt::format("; {} end{} of yarns that look up or down {} free", forming.loose_ends,
+                        forming.loose_ends == 1 ? "" : "s", forming.loose_ends == 1 ? "is" : "are");
+  return text;
 }
 
 Json raster_json(const fem::Raster& raster) {

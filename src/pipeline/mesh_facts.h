@@ -6,6 +6,7 @@
 
 #include "core/diagnostics.h"
 #include "fem/beams.h"
+#include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/pores.h"
 #include "fem/raster.h"
@@ -20,8 +21,14 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate = {});
 Json beams_json(const fem::BeamModel& beams);
 std::string beams_in_words(const fem::BeamModel& beams);
 
+// Of an explicit step: what is done, and how many increments that takes.
+Json forming_json(const fem::Forming& forming);
+std::string forming_in_words(const fem::Forming& forming);
+
 // Of tetrahedra: how many, and how sharp their angles are.
 std::string tetrahedra_in_words(const fem::Mesh& mesh);
+// Of a pore space that has layers (Mesh::layers).
+std::string layers_in_words(const fem::Mesh& mesh, Unit units);
 
 // Of swept hexahedra: how many, and the worst.
 std::string hexahedra_in_words(const fem::Mesh& mesh);

@@ -59,10 +59,12 @@ class Chosen {
   Chosen(const Options& options, const FieldMesh& mesh, const view::Camera& camera) : mesh_(mesh) {
     const bool has_yarns = !std::all_of(mesh.regions.begin(), mesh.regions.end(), fem::is_matrix);
     const bool has_names = !options.shown_yarns.empty();
-    const ShownMatrix part = options.shown_matrix.value_or(!has_yarns || has_names ? ShownMatrix::whole : ShownMatrix::half);
+    const ShownMatrix part =
+        options.shown_matrix.value_or(!has_yarns || has_names ? ShownMatrix::whole : ShownMatrix::half);
     for (const std::string& name : mesh.regions) {
       const bool is_half = fem::is_matrix(name) && part == ShownMatrix::half;
-      const bool is_shown = pipeline::is_shown(options, name) && !(fem::is_matrix(name) && part == ShownMatrix::none);
+      const bool is_shown =
+          pipeline::is_shown(options, name) && !(fem::is_matrix(name) && part == ShownMatrix::none);
       looks_.push_back(!is_shown ? Look::hidden : is_half ? Look::half : Look::whole);
     }
     Box3 box;
@@ -92,7 +94,8 @@ class Chosen {
 };
 
 // The surface of the elements that are shown, of points that it has.
-view::MeshSurface surface_of(const FieldMesh& mesh, const Chosen& chosen, const std::optional<ShownValues>& shown) {
+view::MeshSurface surface_of(const FieldMesh& mesh, const Chosen& chosen,
+                             const std::optional<ShownValues>& shown) {
   FieldMesh part;
   part.nodes = mesh.nodes;
   std::vector<std::uint32_t> element_of;
@@ -120,13 +123,15 @@ view::MeshSurface surface_of(const FieldMesh& mesh, const Chosen& chosen, const 
     const FieldMesh::Element& element = part.elements[outside.element[k]];
     if (shown && !shown->of_nodes) surface.values.push_back(shown->values[element_of[outside.element[k]]]);
     if (!shown)
-      surface.colors.push_back(fem::is_matrix(mesh.regions[element.region]) ? view::matrix_color
-                                                                           : view::hue_color(element.region));
+      surface.colors.push_back(fem::is_matrix(mesh.regions[element.region])
+                                   ? view::matrix_color
+                                   : view::hue_color(element.region));
   }
   return surface;
 }
 
-// What the scale's ends are: as asked for, else the least and the largest value; one value alone is told from 0.
+// What the scale's ends are: as asked for, else the least and the largest value; one value alone is told from
+// 0.
 void set_range(view::MeshSurface& surface, const Options& options) {
   if (options.value_range) {
     surface.low = options.value_range->first;
@@ -150,8 +155,9 @@ void set_range(view::MeshSurface& surface, const Options& options) {
 }
 
 Message none_chosen(const FieldMesh& mesh) {
-  return error(Kind::unsupported, fmt::format("no region is shown: --yarns and --show-matrix leave out all of {}",
-                                              fmt::join(mesh.regions, ", ")));
+  return error(Kind::unsupported,
+               fmt::format("no region is shown: --yarns and --show-matrix leave out all of {}",
+                           fmt::join(mesh.regions, ", ")));
 }
 
 }  // namespace
@@ -177,8 +183,10 @@ std::optional<std::string> draw_mesh(Job& job, FieldMesh mesh) {
   const view::Camera camera(options.eye, mesh.nodes, options.width, options.height);
   view::MeshSurface surface = surface_of(mesh, Chosen(given, mesh, camera), shown);
   if (surface.triangles.empty()) return job.fail(none_chosen(mesh));
-  if (shown && std::none_of(surface.values.begin(), surface.values.end(), [](float v) { return std::isfinite(v); }))
-    return job.fail(error(Kind::unsupported, fmt::format("what is shown has no value of {}", in_quotes(given.field))));
+  if (shown &&
+      std::none_of(surface.values.begin(), surface.values.end(), [](float v) { return std::isfinite(v); }))
+    return job.fail(
+        error(Kind::unsupported, fmt::format("what is shown has no value of {}", in_quotes(given.field))));
   set_range(surface, given);
 
   const int bar = given.no_scale_bar ? 0 : view::scale_bar_rows(options.width, options.height);

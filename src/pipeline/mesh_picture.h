@@ -8,8 +8,8 @@
 
 namespace selvage::pipeline {
 
-// As the command line asks for it, as a PNG file: regions by colours, or a field with its legend. What cannot be shown is an
-// error, and said.
+// As the command line asks for it, as a PNG file: regions by colours, or a field with its legend. What cannot
+// be shown is an error, and said.
 std::optional<std::string> draw_mesh(Job& job, fem::FieldMesh mesh);
 
 }  // namespace selvage::pipeline

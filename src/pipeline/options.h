@@ -13,6 +13,7 @@
 #include "core/option.h"
 #include "core/units.h"
 #include "fabric/plies.h"
+#include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/physics.h"
 #include "formats/format.h"
@@ -52,6 +53,14 @@ struct RelaxSettings {
 
 // What yarns are meshed with.
 enum class Elements { tetrahedra, hexahedra, beams };
+
+// The explicit step of `mesh --deck explicit`; lengths in the input's unit.
+struct FormingSettings {
+  bool wanted = false;
+  fem::FormingLoad load = fem::FormingLoad::biaxial;
+  std::optional<double> stroke, thickness, duration;  // as fem::FormingOptions
+  double friction = 0;
+};
 
 // When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million
 // points.
@@ -117,15 +126,18 @@ struct Options {
   int order = 0;            // 1, 2; 0: 2 of beams, of plates with a matrix, else 1
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
+  FormingSettings forming;
 
   // The unit cell: of `mesh` and `convert`.
-  bool cut = false;        // by the cell's faces
-  bool matrix = false;     // with the rest of the cell
-  bool pores = false;      // the rest of the cell alone, as a space for a fluid (implies matrix)
-  bool periodic = false;   // opposite faces alike, and equations between them
-  int segments = 0;        // edges round each yarn; 0: by size
-  double matrix_size = 0;  // to which edges may grow away from the yarns, input's unit; 0: size
-  bool bond = false;       // yarns in contact share faces, instead of a gap filled with matrix
+  bool cut = false;            // by the cell's faces
+  bool matrix = false;         // with the rest of the cell
+  bool pores = false;          // the rest of the cell alone, as a space for a fluid (implies matrix)
+  int layers = 0;              // of wedges along the walls of pores
+  double layer_thickness = 0;  // of all of them, input's unit; 0: the mesher's choice
+  bool periodic = false;       // opposite faces alike, and equations between them
+  int segments = 0;            // edges round each yarn; 0: by size
+  double matrix_size = 0;      // to which edges may grow away from the yarns, input's unit; 0: size
+  bool bond = false;           // yarns in contact share faces, instead of a gap filled with matrix
   fem::Joining joining = fem::Joining::bonded;  // of regions where they meet
   int voxels = 0;       // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
   bool chamis = false;  // stiffness of yarns from that of their fibres (Chamis), not as their material says
@@ -146,13 +158,13 @@ struct Options {
   std::optional<double> azimuth, elevation;  // degrees; instead of `from`
   std::optional<view::Section> section;
   double zoom = 1;
-  std::vector<std::string> shown_yarns;       // patterns of names; empty: all
-  std::string field;                          // of a mesh's results, as given; empty: its regions
-  int step = 0;                               // from 1; 0: the last
+  std::vector<std::string> shown_yarns;                  // patterns of names; empty: all
+  std::string field;                                     // of a mesh's results, as given; empty: its regions
+  int step = 0;                                          // from 1; 0: the last
   std::optional<std::pair<double, double>> value_range;  // low < high; none: of the values
   std::optional<DeformedScale> deformed;                 // none: as it was before
   std::optional<ShownMatrix> shown_matrix;  // none: the half beside yarns, whole where names are asked for
-  std::string deck;                         // that the results are of; empty: the one beside them, if there is one
+  std::string deck;  // that the results are of; empty: the one beside them, if there is one
   int picture_width = 0, picture_height = 0;  // pixels
   yarn::Color background{};
   bool flat = false, no_scale_bar = false;

@@ -273,6 +273,22 @@ Status check_transport(fem::Physics physics, const Formats& wanted) {
   return {};
 }
 
+// What an explicit step needs of its options and formats.
+Status check_forming(const Options& options, const Formats& wanted) {
+  if (options.forming.thickness && options.forming.load != fem::FormingLoad::compaction)
+    return error(Kind::usage, fmt::format("--thickness is of --load compaction, not of {}",
+                                          fem::name_of(options.forming.load)));
+  for (const Descriptor* format : wanted) {
+    if (format->carries_forming) continue;
+    std::string others;
+    for (const Descriptor* other : formats::all_formats())
+      if (other->carries_forming) others += fmt::format(" --to {}", other->name);
+    return error(Kind::usage,
+                 fmt::format("{} holds no deck of --deck explicit: write it with{}", format->name, others));
+  }
+  return {};
+}
+
 Status check_beams(const Options& options, const Formats& wanted) {
   for (const Descriptor* format : wanted) {
     if (has_companion(options, *format) && format->companion.asked_by != nullptr)
@@ -327,6 +343,17 @@ Status check_pores(const Options& options, const Formats& wanted) {
     if (format->is_of_pores && !options.pores)
       return error(Kind::usage,
                    fmt::format("{} holds the space between the yarns of a cell: add --pores", format->name));
+    if (options.layers > 0) {
+      if (options.order == 2)
+        return error(Kind::usage, "--layers is of tetrahedra and wedges with straight edges: --order 1");
+      if (!format->has_layers) {
+        std::string others;
+        for (const Descriptor* other : formats::all_formats())
+          if (other->has_layers) others += fmt::format(" --to {}", other->name);
+        return error(Kind::usage,
+                     fmt::format("{} does not hold --layers: write them with{}", format->name, others));
+      }
+    }
     if (!options.pores || (format->order_of_pores >= std::max(options.order, 1))) continue;
     std::string others;
     for (const Descriptor* other : formats::all_formats())
@@ -372,6 +399,8 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
     if (options.elements == Elements::beams)
       if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
+    if (options.forming.wanted)
+      if (Status status = check_forming(options, *wanted); !status.ok()) return status.error();
     if (Status status = check_folders(options, *wanted); !status.ok()) return status.error();
     if (Status status = check_pores(options, *wanted); !status.ok()) return status.error();
     if (options.physics != fem::Physics::elastic)

@@ -31,14 +31,16 @@ Status take_background(Options& options, const std::string& text) {
 Status take_value_range(Options& options, const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon != std::string::npos) {
-    const std::optional<double> low = read_number(text.substr(0, colon)), high = read_number(text.substr(colon + 1));
+    const std::optional<double> low = read_number(text.substr(0, colon)),
+                                high = read_number(text.substr(colon + 1));
     if (low && high && *low < *high) {
       options.value_range = {*low, *high};
       return {};
     }
   }
-  return error(Kind::usage,
-               fmt::format("'{}' is no range; it is LOW:HIGH, the lower value first, for example 0:250", text));
+  return error(
+      Kind::usage,
+      fmt::format("'{}' is no range; it is LOW:HIGH, the lower value first, for example 0:250", text));
 }
 
 Status take_deformed(Options& options, const std::string& text) {

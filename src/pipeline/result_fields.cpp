@@ -25,11 +25,14 @@ struct Quantity {
   std::string_view names;  // in CalculiX's results; in VTU made from them
   std::string_view unit;   // empty: as the deck has it
 };
-constexpr std::array quantities = {
-    Quantity{"displacement", "DISP U", "mm"}, Quantity{"stress", "STRESS S", "MPa"},
-    Quantity{"strain", "TOSTRAIN E", ""},     Quantity{"temperature", "NDTEMP NT", ""},
-    Quantity{"flux", "FLUX HFL", ""},         Quantity{"force", "FORC RF", "N"},
-    Quantity{"gap", "gap", "mm"},             Quantity{"angle", "min_dihedral", "degrees"}};
+constexpr std::array quantities = {Quantity{"displacement", "DISP U", "mm"},
+                                   Quantity{"stress", "STRESS S", "MPa"},
+                                   Quantity{"strain", "TOSTRAIN E", ""},
+                                   Quantity{"temperature", "NDTEMP NT", ""},
+                                   Quantity{"flux", "FLUX HFL", ""},
+                                   Quantity{"force", "FORC RF", "N"},
+                                   Quantity{"gap", "gap", "mm"},
+                                   Quantity{"angle", "min_dihedral", "degrees"}};
 
 bool is_among(std::string_view name, std::string_view names) {
   const std::vector<std::string_view> all = words_of(names);
@@ -96,11 +99,12 @@ Result<Part> part_of(const Field& field, std::string_view word) {
   if (failure == std::errc() && end == word.data() + word.size() && field.components > 1 &&
       number < static_cast<std::size_t>(field.components))
     return Part{fmt::format("{{}} {}", number), Part::Kind::component, number};
-  const std::string known = field.components == 1   ? "it has none"
-                            : field.components == 3 ? "it has size, x, y, z"
-                            : field.components == 6
-                                ? "it has mises, xx, yy, zz, xy, yz, zx, and fibre where a deck tells the fibres"
-                                : fmt::format("it has size and 0 to {}", field.components - 1);
+  const std::string known =
+      field.components == 1   ? "it has none"
+      : field.components == 3 ? "it has size, x, y, z"
+      : field.components == 6
+          ? "it has mises, xx, yy, zz, xy, yz, zx, and fibre where a deck tells the fibres"
+          : fmt::format("it has size and 0 to {}", field.components - 1);
   return error(Kind::unsupported,
                fmt::format("the field {} has no part {}: {}", in_quotes(field.name), in_quotes(word), known));
 }
@@ -124,8 +128,7 @@ std::string title_of(const fem::FieldMesh& mesh, const Field& field, const Part&
   std::string title = fmt::format(fmt::runtime(part.title), quantity == nullptr ? base : quantity->word);
   if (along) title += " along the fibre";
   if (quantity != nullptr && !quantity->unit.empty()) title += fmt::format(", {}", quantity->unit);
-  if (field.step > 0)
-    title += fmt::format("; {}", mesh.steps[static_cast<std::size_t>(field.step) - 1]);
+  if (field.step > 0) title += fmt::format("; {}", mesh.steps[static_cast<std::size_t>(field.step) - 1]);
   return title;
 }
 
@@ -145,7 +148,8 @@ Result<ShownValues> along_fibre(const fem::FieldMesh& mesh, const Field& field, 
       Kind::unsupported,
       field.components != 6
           ? fmt::format("{} is no stress or strain: it has no part along the fibre", in_quotes(field.name))
-          : "nothing says where the fibres are: name the deck that was solved with --deck FILE.inp, or keep it "
+          : "nothing says where the fibres are: name the deck that was solved with --deck FILE.inp, or keep "
+            "it "
             "beside the results under the same name");
 }
 
@@ -158,8 +162,9 @@ Result<int> step_of(const fem::FieldMesh& mesh, int step) {
   std::vector<std::string> names;
   for (int k = 0; k < std::min(count, 12); ++k)
     names.push_back(fmt::format("{} {}", k + 1, in_quotes(mesh.steps[static_cast<std::size_t>(k)])));
-  return error(Kind::unsupported, fmt::format("there is no step {}: there are {}{}", step, fmt::join(names, ", "),
-                                              count > 12 ? fmt::format(" and so on to {}", count) : ""));
+  return error(Kind::unsupported,
+               fmt::format("there is no step {}: there are {}{}", step, fmt::join(names, ", "),
+                           count > 12 ? fmt::format(" and so on to {}", count) : ""));
 }
 
 Result<ShownValues> values_of(const fem::FieldMesh& mesh, std::string_view wanted, int step) {
@@ -169,7 +174,8 @@ Result<ShownValues> values_of(const fem::FieldMesh& mesh, std::string_view wante
     return values_of(mesh, *whole, *part, whole->name.ends_with(fem::along_the_fibre));
   }
   const std::size_t dot = wanted.rfind('.');
-  const Field* const field = dot == std::string_view::npos ? nullptr : find(mesh, wanted.substr(0, dot), step);
+  const Field* const field =
+      dot == std::string_view::npos ? nullptr : find(mesh, wanted.substr(0, dot), step);
   if (field == nullptr)
     return error(Kind::unsupported,
                  fmt::format("the file has no field {}: {}", in_quotes(wanted), list_of_fields(mesh, step)));

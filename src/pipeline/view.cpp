@@ -9,8 +9,8 @@
 
 #include "core/source.h"
 #include "core/text_report.h"
-#include "pipeline/detect.h"
 #include "fem/solved_deck.h"
+#include "pipeline/detect.h"
 #include "pipeline/mesh_deck.h"
 #include "pipeline/mesh_page.h"
 #include "pipeline/mesh_picture.h"
@@ -121,9 +121,10 @@ std::optional<Message> not_of_a_mesh(const Options& given, bool is_page) {
   if (given.section)
     return error(Kind::unsupported, "--section is of yarns: a mesh is cut on its page (-o FILE.html)");
   if (is_page && (!given.field.empty() || given.step != 0 || given.deformed || given.shown_matrix))
-    return error(Kind::unsupported,
-                 "--field, --step, --range, --deformed and --show-matrix are of pictures; on a page fields, steps and "
-                 "shapes are chosen under 'Fields'");
+    return error(
+        Kind::unsupported,
+        "--field, --step, --range, --deformed and --show-matrix are of pictures; on a page fields, steps and "
+        "shapes are chosen under 'Fields'");
   return std::nullopt;
 }
 
@@ -149,9 +150,10 @@ void view_mesh(Job& job, const formats::Descriptor& format) {
 std::optional<Message> not_of_yarns(const Options& given) {
   if (given.field.empty() && given.step == 0 && !given.deformed && !given.shown_matrix && given.deck.empty())
     return std::nullopt;
-  return error(Kind::unsupported,
-               "--field, --step, --deformed, --show-matrix and --deck are of meshes and results (VTU, FRD), and this "
-               "is none");
+  return error(
+      Kind::unsupported,
+      "--field, --step, --deformed, --show-matrix and --deck are of meshes and results (VTU, FRD), and this "
+      "is none");
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ void write_meshes(Job& job, OpenOutputs& outputs, const Meshes& meshes) {
   for (OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
     const formats::MeshFileOptions options = {
-        companion_of(output, outputs), job.options.of_formats,
+        companion_of(output, outputs), job.options.of_formats, meshes.forming ? &*meshes.forming : nullptr,
         [&output](std::string_view name) { return open_member(output, name); }};
     if (!take_facts(job, output,
                     format.write_raster != nullptr ? format.write_raster(*meshes.raster, output.file)

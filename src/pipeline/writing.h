@@ -40,6 +40,7 @@ struct Meshes {
   std::optional<fem::Mesh> mesh;
   std::optional<fem::BeamModel> beams;
   std::optional<fem::Raster> raster;
+  std::optional<fem::Forming> forming;  // of the mesh, or the beams
 };
 
 // Writes to every output what it takes of them, and commits them; what goes wrong is said.

@@ -116,7 +116,8 @@ constexpr std::array letters = {
 
 const Letter* letter_of(char sign) {
   const auto find = [](char wanted) {
-    return std::find_if(letters.begin(), letters.end(), [&](const Letter& known) { return known.sign == wanted; });
+    return std::find_if(letters.begin(), letters.end(),
+                        [&](const Letter& known) { return known.sign == wanted; });
   };
   const auto* const found = find(sign);
   return found != letters.end() ? found : find('?');
@@ -169,7 +170,8 @@ int letter_height(int width, int height) {
   return std::max(smallest_letters, static_cast<int>(std::min(width, height) / letters_a_side));
 }
 
-Band::Band(Picture& picture, int rows, const yarn::Color& background) : picture_(picture), first_(picture.height) {
+Band::Band(Picture& picture, int rows, const yarn::Color& background)
+    : picture_(picture), first_(picture.height) {
   const double bright = 0.299 * background.red + 0.587 * background.green + 0.114 * background.blue;
   ink_.fill(bright > 127 ? 0 : 255);
   picture.height += rows;
@@ -191,7 +193,8 @@ void Band::for_each_pixel(double left, double top, double right, double bottom, 
       std::uint8_t* const at =
           &picture_.rgb[3 * (static_cast<std::size_t>(first_ + y) * width() + static_cast<std::size_t>(x))];
       for (std::size_t channel = 0; channel < 3; ++channel)
-        at[channel] = static_cast<std::uint8_t>(std::lround(at[channel] + covered * (ink[channel] - at[channel])));
+        at[channel] =
+            static_cast<std::uint8_t>(std::lround(at[channel] + covered * (ink[channel] - at[channel])));
     }
 }
 

@@ -7,7 +7,8 @@
 
 namespace selvage::view {
 
-// An approximation of viridis (S. van der Walt, N. Smith 2015) by its values at ninths, between which the bytes are mixed.
+// An approximation of viridis (S. van der Walt, N. Smith 2015) by its values at ninths, between which the
+// bytes are mixed.
 inline constexpr std::array<yarn::Color, 10> color_scale = {{{68, 1, 84},
                                                              {72, 40, 120},
                                                              {62, 74, 137},
@@ -20,7 +21,8 @@ inline constexpr std::array<yarn::Color, 10> color_scale = {{{68, 1, 84},
                                                              {253, 231, 37}}};
 inline constexpr yarn::Color color_of_none{153, 153, 153};  // of values that are none
 
-// `share`: 0 the least value, 1 the largest; what is beyond has the end's colour. Not a number: color_of_none.
+// `share`: 0 the least value, 1 the largest; what is beyond has the end's colour. Not a number:
+// color_of_none.
 yarn::Color scale_color(double share);
 
 }  // namespace selvage::view

@@ -25,9 +25,9 @@ yarn::Color scale_color(double share) {
   const double at = std::clamp(share, 0.0, 1.0) * (color_scale.size() - 1);
   const std::size_t k = std::min(color_scale.size() - 2, static_cast<std::size_t>(at));
   const auto mixed = [&](int yarn::Color::*channel) {
-    return static_cast<int>(std::lround(color_scale[k].*channel +
-                                        (at - static_cast<double>(k)) *
-                                            (color_scale[k + 1].*channel - color_scale[k].*channel)));
+    return static_cast<int>(
+        std::lround(color_scale[k].*channel +
+                    (at - static_cast<double>(k)) * (color_scale[k + 1].*channel - color_scale[k].*channel)));
   };
   return {mixed(&yarn::Color::red), mixed(&yarn::Color::green), mixed(&yarn::Color::blue)};
 }

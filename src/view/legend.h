@@ -1,4 +1,5 @@
-// What the colours of a mesh mean: a bar of the colour scale with its values and a title, below what a picture shows.
+// What the colours of a mesh mean: a bar of the colour scale with its values and a title, below what a
+// picture shows.
 #pragma once
 
 #include <string>
@@ -15,8 +16,8 @@ struct Legend {
 // How many rows of pixels it takes of a picture of this size; 0: that one is too small to read it.
 int legend_rows(int width, int height);
 
-// Adds so many rows to the picture, of this background. The bar takes 7 tenths of the width, in the middle, and has five
-// values, the ends among them.
+// Adds so many rows to the picture, of this background. The bar takes 7 tenths of the width, in the middle,
+// and has five values, the ends among them.
 void add_legend(Picture& picture, int rows, const Legend& legend, const yarn::Color& background);
 
 }  // namespace selvage::view

@@ -18,7 +18,12 @@ class PolyMesh:
     def __init__(self, case):
         folder = case / "constant" / "polyMesh"
         self.points = np.array([row.strip("()").split() for row in items(folder / "points")], dtype=float)
-        self.faces = np.array([re.fullmatch(r"3\((\d+) (\d+) (\d+)\)", row).groups() for row in items(folder / "faces")], dtype=int)
+        # Four corners; of a triangle the last one is repeated.
+        rows = [re.fullmatch(r"([34])\(([\d ]+)\)", row).groups() for row in items(folder / "faces")]
+        corners = [words.split() for _, words in rows]
+        assert [len(nodes) for nodes in corners] == [int(count) for count, _ in rows]
+        self.faces = np.array([nodes + nodes[2:] if len(nodes) == 3 else nodes for nodes in corners], dtype=int)
+        self.is_triangle = self.faces[:, 2] == self.faces[:, 3]
         self.owner = np.array(items(folder / "owner"), dtype=int)
         self.neighbour = np.array(items(folder / "neighbour"), dtype=int)
         self.cells = max(self.owner.max(), self.neighbour.max()) + 1
@@ -27,8 +32,8 @@ class PolyMesh:
         for name, body in re.findall(r"^    (\w+)\n    \{\n(.*?)\n    \}$", text, re.MULTILINE | re.DOTALL):
             self.patches[name] = dict(re.findall(r"^ +(\w+) +(\S+?);$", body, re.MULTILINE))
         corners = self.points[self.faces]
-        self.areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-        self.middles = corners.mean(axis=1)
+        self.areas = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]) / 2
+        self.middles = np.where(self.is_triangle[:, None], corners[:, :3].mean(axis=1), corners.mean(axis=1))
 
     def of_patch(self, name):
         start = int(self.patches[name]["startFace"])
@@ -44,8 +49,8 @@ class PolyMesh:
     def volumes(self):
         return self.sums((self.areas * self.middles).sum(axis=1)) / 3
 
-    def faults(self):
-        """What is wrong with it, in words."""
+    def faults(self, wedges=0):
+        """What is wrong with it, in words. So many wedges are its last cells, the others are tetrahedra."""
         found = []
         inner = len(self.neighbour)
         if not (self.owner[:inner] < self.neighbour).all():
@@ -57,8 +62,8 @@ class PolyMesh:
             found.append("a cell is open")
         if self.volumes().min() <= 0:
             found.append("a cell has no volume")
-        if np.bincount(np.concatenate([self.owner, self.neighbour])).tolist() != [4] * self.cells:
-            found.append("a cell has not four faces")
+        if np.bincount(np.concatenate([self.owner, self.neighbour])).tolist() != [4] * (self.cells - wedges) + [5] * wedges:
+            found.append("a cell has not as many faces as it should")
         if set(self.faces.ravel()) != set(range(len(self.points))):
             found.append("a point is in no face")
         end = inner
@@ -84,6 +89,7 @@ class PolyMesh:
             return [f"{name} and {other} are not in the same order"]
         # The first corners are opposite each other, the others run the other way round.
         moved = self.points[self.faces[here]] + step
-        if np.abs(self.points[self.faces[there]][:, [0, 2, 1]] - moved).max() > near:
+        turned = np.where(self.is_triangle[there][:, None], self.faces[there][:, [0, 2, 1, 1]], self.faces[there][:, [0, 3, 2, 1]])
+        if np.abs(self.points[turned] - moved).max() > near:
             return [f"{name} and {other} do not begin at the same corners"]
         return []

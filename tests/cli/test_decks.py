@@ -300,5 +300,29 @@ class Fractions(Case):
             gmsh.finalize()
 
 
+
+class ModifiedTetrahedra(Case):
+    """`--tetrahedron C3D10M`: another element on the same nodes, of Abaqus alone."""
+
+    def test_only_the_element_is_another_one(self):
+        for name, options in (("usual", ()), ("modified", ("--tetrahedron", "C3D10M"))):
+            self.succeeds("mesh", PATH, "--size", "0.3", "--order", "2", *options, "-o", self.folder / f"{name}.inp")
+        modified = (self.folder / "modified.inp").read_text()
+        self.assertEqual(modified.count("TYPE=C3D10M,"), 4)  # a yarn each
+        self.assertEqual(modified.replace("TYPE=C3D10M,", "TYPE=C3D10,"), (self.folder / "usual.inp").read_text())
+
+    def test_refusals(self):
+        deck = self.folder / "deck.inp"
+        asked = ("mesh", PATH, "--size", "0.3", "--tetrahedron", "C3D10M", "-o", deck)
+        self.assertIn("that Abaqus has and CalculiX has not", self.fails(2, *asked, "--order", "2", "--solver", "calculix"))
+        self.assertIn("it goes with --order", self.fails(2, *asked))
+        self.assertIn("has ten nodes, and this mesh has four a tetrahedron: say --order 2", self.fails(1, *asked, "--order", "1"))
+        self.assertFalse(deck.exists())
+        self.succeeds("mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--order", "2", "--tetrahedron", "C3D10M", "-o", deck)
+        done = subprocess.run([sys.executable, ROOT / "scripts" / "homogenize.py", deck], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("elements of type C3D10M, which this script does not know", done.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -95,6 +95,24 @@ class Oblique(Case):
             self.skipTest("SELVAGE_TABLE is not set: some minutes")
         self.assert_alike(*self.both("--size", "0.6", "--order", "2"), 5e-3)
 
+    def test_the_bending_of_the_whole_repeat(self):
+        """Both as plates, of curved tetrahedra: all of A, B and D."""
+        if not os.environ.get("SELVAGE_TABLE"):
+            self.skipTest("SELVAGE_TABLE is not set: two minutes")
+        oblique, _ = self.mesh(TWILL, "oblique", "--size", "0.3")
+        whole, _ = self.mesh(TWILL.replace(VECTORS, "cell 0 0 -0.345  4.8 4.8 0.345"), "whole", "--size", "0.3")
+        self.assert_alike(oblique, whole, 5e-3)
+
+    def test_a_cohesive_interface(self):
+        """The stiffness is that of the bonded cell to a thousandth, in an oblique one as well."""
+        stacked = TWILL.replace("periodic x y", "periodic x y z").replace("ellipse 0.8 0.3", "ellipse 0.8 0.5").replace(
+            VECTORS, f"{VECTORS}  0 0 1.2")
+        bonded, _ = self.mesh(stacked, "bonded", "--size", "0.5", "--order", "1")
+        cohesive, _ = self.mesh(stacked, "cohesive", "--size", "0.5", "--order", "1", "--interface", "cohesive")
+        wanted, found = self.stiffness(bonded)[0], self.stiffness(cohesive)[0]
+        scale = np.sqrt(np.diag(wanted))
+        self.assertLess((np.abs(found - wanted) / np.outer(scale, scale)).max(), 1e-3)
+
     def test_voxels(self):
         """As many along x over the same length; the others are parallelepipeds, so that the stairs differ."""
         self.assert_alike(*self.both("--voxel", "32"), VOXELS)

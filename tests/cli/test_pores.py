@@ -130,6 +130,82 @@ class Pores(Case):
         self.assertEqual({block.type for block in mesh.cells}, {"vertex", "line3", "triangle6", "tetra10"})
         self.assertAlmostEqual(facts["porosity"], 0.6, delta=1e-4)
 
+    def test_layers(self):
+        """Three layers, each 1.2 times as thick as the one before it: where their nodes stand round a cylinder, what they fill, and
+        that elements are as positive for Gmsh as for OpenFOAM."""
+        radius, thickness, count = array_flow.radius_of("square", 0.4), 0.03, 3
+        plain = PolyMesh(self.mesh(array("square", 0.4), "--periodic", "--segments", "20")[0])
+        case, said, facts = self.mesh(array("square", 0.4), "--periodic", "--segments", "20", "--layers", str(count), "--layer-thickness",
+                                      str(thickness))
+        mesh, wedges = PolyMesh(case), facts["layers"]["wedges"]
+        self.assertEqual(mesh.faults(wedges), [])
+        self.assertEqual(mesh.cells - wedges, plain.cells)
+        self.assertEqual(wedges, count * int(plain.patches["rod_0"]["nFaces"]))
+        self.assertAlmostEqual(mesh.volumes().sum() / plain.volumes().sum(), 1, places=12)
+        self.assertIn(f"{wedges} wedges in 3 layers along the walls, 0.03 mm thick on average", said)
+        # From the wall: the nodes of faces of wedges alone lie at these distances.
+        is_wedge = mesh.owner >= plain.cells
+        is_wedge[: len(mesh.neighbour)] &= mesh.neighbour >= plain.cells
+        nodes = np.unique(mesh.faces[is_wedge])
+        distances = np.hypot(1e3 * mesh.points[nodes, 1] - 0.5, 1e3 * mesh.points[nodes, 2] - 0.5)
+        wall = np.hypot(*(1e3 * mesh.points[np.unique(mesh.faces[mesh.of_patch("rod_0")])][:, 1:] - 0.5).T)
+        rises = np.cumsum([0] + [1.2**k for k in range(count)]) / sum(1.2**k for k in range(count)) * thickness
+        off = np.abs(distances[:, None] - wall.mean() - rises).min(axis=1)
+        # Nodes of the wall are not all equally far out, and of a chord's normal the mean is taken.
+        self.assertLess(off.max(), 2 * np.abs(wall - wall.mean()).max() + 0.02 * thickness)
+        self.assertEqual(len(nodes), (count + 1) * len(wall))
+        self.assertLess(np.abs(wall - radius).max(), 0.02 * radius)
+        self.check_by_openfoam(case)
+
+    def test_layers_in_other_formats(self):
+        cell = self.folder / "cell.txt"
+        cell.write_text(array("square", 0.4))
+        self.succeeds("mesh", cell, "--pores", "--periodic", "--layers", "2", "--to", "foam,msh,vtu", "-o", self.folder)
+        foam = PolyMesh(self.folder / "cell.foam")
+        places = np.unique(np.round(1e3 * foam.points, 9), axis=0)
+        for name in ("cell.msh", "cell.vtu"):
+            mesh = meshio.read(self.folder / name)
+            self.assertTrue(np.array_equal(np.unique(np.round(mesh.points, 9), axis=0), places))
+            count = {kind: sum(len(block.data) for block in mesh.cells if block.type == kind) for kind in ("tetra", "wedge")}
+            self.assertEqual(count["tetra"] + count["wedge"], foam.cells)
+            self.assertEqual(foam.faults(count["wedge"]), [])
+        gmsh.initialize(["gmsh", "-v", "1"])
+        try:
+            gmsh.open(str(self.folder / "cell.msh"))
+            quads = {gmsh.model.getPhysicalName(2, tag): sum(len(gmsh.model.mesh.getElementsByType(3, entity)[0])
+                                                             for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag))
+                     for _, tag in gmsh.model.getPhysicalGroups(2)}
+            volume = 0
+            for kind in (4, 6):
+                points, weights = gmsh.model.mesh.getIntegrationPoints(kind, "Gauss4")
+                _, determinants, _ = gmsh.model.mesh.getJacobians(kind, points)
+                self.assertGreater(determinants.min(), 0)
+                volume += (determinants.reshape(-1, len(weights)) @ weights).sum()
+            links = {tag: len(gmsh.model.mesh.getPeriodicNodes(2, tag)[1]) for _, tag in gmsh.model.getEntities(2)}
+        finally:
+            gmsh.finalize()
+        self.assertAlmostEqual(volume / (1e9 * foam.volumes().sum()), 1, places=9)
+        for name, patch in foam.patches.items():
+            faces = foam.faces[foam.of_patch(name)]
+            self.assertEqual(quads[name], (faces[:, 2] != faces[:, 3]).sum())
+        for high in ("x_high", "y_high", "z_high"):
+            self.assertIn(len(np.unique(foam.faces[foam.of_patch(high)])), links.values())
+
+    def test_layers_over_open_and_oblique_faces(self):
+        """An oblique cell of a weave, stacked, whose yarns cross its faces at any angle; and one with open faces."""
+        text = (ROOT / "samples" / "cell_twill.txt").read_text()
+        for periodic in ("x y", "x y z"):
+            given = text.replace("  periodic x y\n", f"  periodic {periodic}\n")
+            if periodic == "x y z":
+                given = given.replace("-1.2 1.2 0", "-1.2 1.2 0  0 0 1.2").replace("ellipse 0.8 0.3", "ellipse 0.8 0.5")
+            case, said, facts = self.mesh(given, "--periodic", "--size", "0.4", "--layers", "2")
+            mesh = PolyMesh(case)
+            self.assertEqual(mesh.faults(facts["layers"]["wedges"]), [])
+            self.assertGreater(facts["layers"]["min_scaled_jacobian"], 0)
+            self.assertIn("neighbours are in the way", said)
+            self.assertGreater(facts["layers"]["thinned"], 0)
+            self.assertAlmostEqual(1e9 * mesh.volumes().sum() / facts["volume"], 1, places=9)
+
     def test_what_is_shut_is_said(self):
         """A wall across z, from end to end of the cell along x and y: periodic, and with open faces."""
         section = "polygon\n    -1 -0.15\n    1 -0.15\n    1 0.15\n    -1 0.15\n  end"
@@ -150,6 +226,10 @@ class Pores(Case):
             (["--periodic", "--to", "foam"], "add --pores"),
             (["--pores", "--to", "foam", "-o", "-"], "foam is a folder"),
             (["--pores", "--voxel", "5", "--to", "vtu"], "--pores is the space that the yarns leave"),
+            (["--pores", "--layers", "3", "--to", "cdb"], "cdb does not hold --layers: write them with --to msh --to vtu --to foam"),
+            (["--pores", "--layers", "3", "--order", "2", "--to", "msh"], "--layers is of tetrahedra and wedges with straight edges"),
+            (["--matrix", "--layers", "3", "--to", "msh"], "--layers is of walls round a fluid"),
+            (["--pores", "--layer-thickness", "0.1", "--to", "msh"], "--layer-thickness is of layers along walls"),
         ):
             done = run("mesh", cell, *words, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
@@ -239,6 +319,7 @@ class Permeability(Case):
         if shutil.which("simpleFoam") is None:
             self.skipTest("OpenFOAM is not installed")
         self.check_array("square", 0.4, "--solver", "openfoam", "--segments", "20", within=0.1)
+        self.check_array("square", 0.4, "--solver", "openfoam", "--segments", "20", "--layers", "3", within=0.04)
 
     def test_openfoam_not_there(self):
         cell = self.folder / "cell.txt"

@@ -172,7 +172,8 @@ void Renderer::draw_tile(int left, int top, int right, int bottom, Picture& pict
   for (int y = top; y < bottom; ++y)
     for (int x = left; x < right; ++x)
       put(picture, x, y,
-          pixel(tile, stride, (x - left) * samples_side + window_before, (y - top) * samples_side + window_before));
+          pixel(tile, stride, (x - left) * samples_side + window_before,
+                (y - top) * samples_side + window_before));
 }
 
 Result<std::vector<Skin>> make_skins(std::span<const yarn::Body> bodies, const Camera& camera, int threads) {

@@ -54,9 +54,8 @@ bool add_triangles(RTCDevice device, RTCScene scene, const std::vector<Vec3f>& p
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* places = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), points.size()));
-  auto* corners = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(std::uint32_t), triangles.size()));
+  auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
   const bool made = places != nullptr && corners != nullptr;
   if (made) {
     for (const Vec3f& p : points)
@@ -107,7 +106,8 @@ Result<Scene> Scene::make(const std::vector<Skin>& skins) {
 
 Result<Scene> Scene::make(const std::vector<Vec3f>& points,
                           const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  return make_of([&](RTCDevice device, RTCScene scene) { return add_triangles(device, scene, points, triangles); });
+  return make_of(
+      [&](RTCDevice device, RTCScene scene) { return add_triangles(device, scene, points, triangles); });
 }
 
 std::optional<Hit> Scene::nearest(const Vec3f& origin, const Vec3f& direction, float beyond) const {

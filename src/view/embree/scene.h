@@ -26,7 +26,8 @@ class Scene {
  public:
   // `skins` outlive the scene. Error (limit): not enough memory.
   static Result<Scene> make(const std::vector<Skin>& skins);
-  // One skin of triangles, whose facets these are; u and v of hits are the shares of the second and the third corner.
+  // One skin of triangles, whose facets these are; u and v of hits are the shares of the second and the third
+  // corner.
   static Result<Scene> make(const std::vector<Vec3f>& points,
                             const std::vector<std::array<std::uint32_t, 3>>& triangles);
 

@@ -22,8 +22,9 @@ inline Picture blank_picture(const PictureOptions& options, const Camera& camera
 }
 
 inline void put(Picture& picture, int x, int y, const Light& light) {
-  std::uint8_t* out = &picture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                                        static_cast<std::size_t>(x))];
+  std::uint8_t* out =
+      &picture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                        static_cast<std::size_t>(x))];
   for (int channel = 0; channel < 3; ++channel) out[channel] = encoded(light[channel]);
 }
 
@@ -31,12 +32,15 @@ inline void put(Picture& picture, int x, int y, const Light& light) {
 template <class Draw>
 void draw_tiles(const PictureOptions& options, const Draw& draw) {
   constexpr int tile_side = 64;  // pixels
-  const auto tiles = [](int pixels) { return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side); };
+  const auto tiles = [](int pixels) {
+    return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side);
+  };
   const std::size_t across = tiles(options.width), count = across * tiles(options.height);
   for_each_index(
       count, options.threads,
       [&](std::size_t k) {
-        const int left = static_cast<int>(k % across) * tile_side, top = static_cast<int>(k / across) * tile_side;
+        const int left = static_cast<int>(k % across) * tile_side,
+                  top = static_cast<int>(k / across) * tile_side;
         draw(left, top, std::min(left + tile_side, options.width), std::min(top + tile_side, options.height));
       },
       options.progress);

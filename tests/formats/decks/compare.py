@@ -70,7 +70,7 @@ if not faults:
 loads = other.loads
 if path.endswith(".cdb"):
     loads = reader.read_macro(path[:-4] + ".mac") if os.path.exists(path[:-4] + ".mac") else []
-if not path.endswith(".k") and reference.equations:
+if reference.equations:
     same("load cases", reference.loads, loads)
 print("nodes", len(other.nodes))
 print("elements", len(other.elements))

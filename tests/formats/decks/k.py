@@ -3,6 +3,9 @@
 from model import Model, constants, in_space, isotropic, right_handed
 
 
+IN_CASES = ("*BOUNDARY_SPC_NODE", "*BOUNDARY_PRESCRIBED_MOTION_NODE", "*DEFINE_CURVE", "*LOAD_THERMAL_LOAD_CURVE")
+
+
 def columns(line, *widths):
     fields, at = [], 0
     for width in widths:
@@ -25,7 +28,9 @@ def read(path):
             blocks[-1][1].append(line)
     materials, parts, expansions, part_of = {}, {}, {}, {}
     part_sets = {}
+    cases, open_case, curves = {}, None, {}  # cases: of each number its drivers' values and the end of its curve of temperature
     for keyword, rows in blocks:
+        assert open_case is None or keyword in IN_CASES or keyword == f"*CASE_END_{open_case}", keyword
         if keyword == "*NODE":
             for row in rows:
                 number, *at = columns(row, 8, 16, 16, 16)
@@ -68,6 +73,31 @@ def read(path):
         elif keyword in ("*SET_NODE_LIST_TITLE", "*SET_PART_LIST_TITLE"):
             members = [int(field) for row in rows[2:] for field in columns(row, *[10] * 8) if field]
             (part_sets if "PART" in keyword else model.node_sets)[rows[0].strip().upper()] = sorted(members)
+        elif keyword == "*CASE":
+            number, name = columns(rows[0], 10, 10)
+            assert name == f"case{number}" and rows[1:] == ["", f"{number:>10}"]  # no commands of its own; the one identifier
+            cases[int(number)] = ({}, 0.0)
+        elif keyword.startswith("*CASE_BEGIN_"):
+            open_case = int(keyword.rpartition("_")[2])
+            assert open_case in cases
+        elif keyword.startswith("*CASE_END_"):
+            open_case = None
+        elif keyword == "*DEFINE_CURVE":
+            points = [tuple(map(float, columns(row, 20, 20))) for row in rows[1:]]
+            assert int(rows[0]) not in curves and points[0] == (0, 0) and points[-1][0] == 1
+            curves[int(rows[0])] = points[-1][1]
+        elif open_case and keyword == "*BOUNDARY_SPC_NODE":
+            for row in rows:
+                node, system, *held = map(int, columns(row, *[10] * 8))
+                assert (system, held) == (0, [1, 0, 0, 0, 0, 0])
+                cases[open_case][0][node] = 0.0
+        elif keyword == "*BOUNDARY_PRESCRIBED_MOTION_NODE":
+            for row in rows:
+                node, direction, kind, curve, scale = columns(row, *[10] * 5)
+                assert (direction, kind) == ("1", "2") and curves[int(curve)] == 1 and float(scale) != 0
+                cases[open_case][0][int(node)] = float(scale)
+        elif keyword == "*LOAD_THERMAL_LOAD_CURVE":
+            cases[open_case] = (cases[open_case][0], curves[int(rows[0])])
         elif keyword == "*CONSTRAINED_MULTIPLE_GLOBAL":
             at = 1
             while at < len(rows):
@@ -82,4 +112,5 @@ def read(path):
         make = isotropic if kind == "isotropic" else constants
         expansion = in_space(expansions[part], kind == "isotropic") if part in expansions else None
         model.material[element] = make(*rest, density if density != 1e-9 else None, expansion)
+    model.loads = [cases[number] for number in sorted(cases)]
     return model

@@ -117,6 +117,22 @@ class Flat {
     add(path + ".g12", v.g12);
     add(path + ".nu23", v.nu23);
   }
+  void add(const std::string& path, const IsotropicStrength& v) {
+    add(path + ".tension", v.tension);
+    add(path + ".compression", v.compression);
+    add(path + ".shear", v.shear);
+  }
+  void add(const std::string& path, const TransverseStrength::Across& v) {
+    add(path + ".tension", v.tension);
+    add(path + ".compression", v.compression);
+    add(path + ".s12", v.s12);
+    add(path + ".s23", v.s23);
+  }
+  void add(const std::string& path, const TransverseStrength& v) {
+    add(path + ".tension", v.tension);
+    add(path + ".compression", v.compression);
+    add(path + ".across", v.across);
+  }
   void add(const std::string& path, const Expansion& v) {
     add(path + ".along", v.along);
     add(path + ".across", v.across);
@@ -139,6 +155,7 @@ class Flat {
     add(path + ".density", v.density);
     add(path + ".packing", v.packing);
     add(path + ".elastic", v.elastic);
+    add(path + ".strength", v.strength);
     add(path + ".expansion", v.expansion);
     add(path + ".conductivity", v.conductivity);
     add(path + ".diffusivity", v.diffusivity);

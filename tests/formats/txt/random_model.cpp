@@ -116,6 +116,20 @@ class Maker {
       material.elastic = TransverseElastic{e2 * between(1.0, 20.0), e2, between(-0.3, 0.3),
                                            some(modulus_quantity), between(-0.5, 0.5)};
     }
+    const auto strength = [&] { return some(strength_quantity); };
+    const int strengths = up_to(2);
+    if (strengths == 1) {
+      IsotropicStrength same = {strength(), strength(), {}};
+      maybe(same.shear, strength);
+      material.strength = same;
+    }
+    if (strengths == 2) {
+      TransverseStrength two = {strength(), strength(), {}};
+      maybe(two.across, [&] {
+        return TransverseStrength::Across{strength(), strength(), strength(), strength()};
+      });
+      material.strength = two;
+    }
     if (coin()) material.expansion = Expansion{some(expansion_quantity), some(expansion_quantity)};
     const auto transport = [&](const Quantity& quantity) {
       const double along = some(quantity);

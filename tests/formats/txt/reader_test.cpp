@@ -130,10 +130,12 @@ end
 material cotton
   density 1.54
   elastic transverse 230000 15000 0.2 24000 0.25
+  strength transverse 2.5GPa 1500 60 200 90
   expansion 5.4e-6 -1e-6
 end
 material epoxy
   elastic isotropic 3400 0.35
+  strength isotropic 80 120 60
   conductivity 0.2
   diffusivity 1e-12m2/s 4e-7
   permittivity 3.6 4.5
@@ -167,6 +169,9 @@ end
   EXPECT_EQ(fabric.materials[0].density, 1.54);
   EXPECT_EQ(std::get<TransverseElastic>(fabric.materials[0].elastic),
             (TransverseElastic{230000, 15000, 0.2, 24000, 0.25}));
+  EXPECT_EQ(std::get<TransverseStrength>(fabric.materials[0].strength),
+            (TransverseStrength{2500, 1500, TransverseStrength::Across{60, 200, 90, 100}}));
+  EXPECT_EQ(std::get<IsotropicStrength>(fabric.materials[1].strength), (IsotropicStrength{80, 120, 60}));
   EXPECT_EQ(fabric.materials[0].expansion, (Expansion{5.4e-6, -1e-6}));
   EXPECT_EQ(std::get<IsotropicElastic>(fabric.materials[1].elastic), (IsotropicElastic{3400, 0.35}));
   EXPECT_FALSE(fabric.materials[0].conductivity);

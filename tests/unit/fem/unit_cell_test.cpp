@@ -331,5 +331,31 @@ TEST(Fibres, ChamisAtItsLimitsAndOnAPublishedCase) {
   EXPECT_NEAR(yarn.nu12, 0.64 * 0.2 + 0.36 * 0.35, 1e-12);
 }
 
+// By hand at 0.64, where the root less the fraction is 0.16.
+TEST(Fibres, StrengthsOfYarnsByChamis) {
+  fabric::Material fibre = material("f", fabric::TransverseElastic{230000, 15000, 0.2, 24000, 0.25});
+  fabric::Material matrix = material("m", fabric::IsotropicElastic{3400, 0.35});
+  fibre.strength = fabric::TransverseStrength{2500, 2000, {}};
+  matrix.strength = fabric::IsotropicStrength{80, 120, {}};
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(chamis(fibre, matrix, 0.64).strength));
+  matrix.strength = fabric::IsotropicStrength{80, 120, 70};
+  auto yarn = std::get<fabric::TransverseStrength>(chamis(fibre, matrix, 0.64).strength);
+  const double across = 1 - 0.16 * (1 - 3400.0 / 15000), along = 1 - 0.16 * (1 - 3400 / 2.7 / 24000);
+  EXPECT_NEAR(yarn.tension, 1600, 1e-9);
+  EXPECT_NEAR(yarn.across->tension, across * 80, 1e-9);
+  EXPECT_NEAR(yarn.across->compression, across * 120, 1e-9);
+  EXPECT_NEAR(yarn.across->s12, along * 70, 1e-9);
+  EXPECT_NEAR(yarn.across->s23, across * 60, 1e-9);
+  EXPECT_NEAR(yarn.compression, 10 * along * 70 + 200, 1e-9);  // 800.9: shear, before crushing (1280)
+  fibre.strength = fabric::IsotropicStrength{2500, 500, {}};
+  yarn = std::get<fabric::TransverseStrength>(chamis(fibre, matrix, 0.64).strength);
+  EXPECT_NEAR(yarn.compression, 320, 1e-9);  // crushing
+  matrix.strength = fabric::IsotropicStrength{800, 1200, 700};
+  fibre.strength = fabric::IsotropicStrength{2500, 9000, {}};
+  yarn = std::get<fabric::TransverseStrength>(chamis(fibre, matrix, 0.64).strength);
+  const double g = 3400 / 2.7;
+  EXPECT_NEAR(yarn.compression, g / (1 - 0.64 * (1 - g / 24000)), 1e-9);  // 3211: microbuckling
+}
+
 }  // namespace
 }  // namespace selvage::fem
