@@ -414,7 +414,7 @@ class Meshes(Base):
                         "*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n")
         subprocess.run(["ccx", "-i", "bar"], cwd=self.folder, check=True, capture_output=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
         page = self.page(self.folder / "bar.frd")
-        self.assertEqual([region["name"] for region in page.data["skin"]["regions"]], ["GLASS", "RESIN"])
+        self.assertEqual([region["name"] for region in page.data["skin"]["regions"]], ["ONE", "TWO"])
         points, triangles, _ = page.skin()
         self.assertEqual(len(triangles), 24)
         moved = page.field("DISP")
