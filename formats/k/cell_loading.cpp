@@ -43,7 +43,7 @@ void write_supports(TextBuffer& text, const fem::Mesh& mesh) {
     put_integers(text, {mesh.number_of_driver(d) + 1, 0, 0, 1, 1, 0, 0, 0});
 }
 
-// Drivers at zero are held, for a scale factor of zero means one.
+// Drivers at zero are held: a scale factor of zero may be read as the default, one.
 void write_case(TextBuffer& text, const fem::Mesh& mesh, std::size_t k) {
   const fem::LoadCase& load = mesh.load_cases[k];
   text << "*CASE_BEGIN_" << k + 1 << '\n';
