@@ -135,7 +135,7 @@ def show(result):
             print(f"  {name}, discretisation error {100 * error[k, k] / limit[k, k]:.2g} % ({how})")
     print(f"asymmetry: {100 * result['asymmetry']:.2g} % of the largest")
     if result["solver"] == "openfoam":
-        print("simpleFoam's viscous stress on tetrahedra keeps an error of some per cent, up to a tenth, whatever the mesh: it is not in "
+        print("simpleFoam's viscous stress on tetrahedra keeps an error of some per cent, up to about a tenth, whatever the mesh: it is not in "
               "these errors. --layers 3 makes it smaller; the own solver does not have it")
     for axis in AXES:
         if axis not in result["periodic"].split():
