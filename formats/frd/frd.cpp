@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/number_text.h"
+#include "core/text_lines.h"
 #include "core/text_report.h"
 #include "core/words.h"
 #include "formats/registry.h"
@@ -20,12 +21,6 @@ namespace {
 
 using fem::FieldMesh;
 using Shape = FieldMesh::Shape;
-
-std::string_view trimmed(std::string_view text) {
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  while (text.ends_with(' ') || text.ends_with('\r')) text.remove_suffix(1);
-  return text;
-}
 
 std::string_view columns(std::string_view line, std::size_t from, std::size_t count) {
   return from < line.size() ? line.substr(from, count) : std::string_view();
@@ -76,22 +71,22 @@ Type type_of(long number) {
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : report_(report), rest_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report) : report_(report), lines_(source.bytes()) {}
 
   std::optional<FieldMesh> read() {
-    while (next()) {
-      const std::string_view key = columns(line_, 0, 6);
-      if (key == "    1U" && columns(line_, 6, 3) == "MAT") name_material();
+    while (lines_.next()) {
+      const std::string_view key = columns(lines_.line(), 0, 6);
+      if (key == "    1U" && columns(lines_.line(), 6, 3) == "MAT") name_material();
       if (key == "    2C" && !read_nodes()) return std::nullopt;
       if (key == "    3C" && !read_elements()) return std::nullopt;
-      if (columns(line_, 4, 6) == "1PSTEP") note_step();
+      if (columns(lines_.line(), 4, 6) == "1PSTEP") note_step();
       if (key == "  100C" && !read_results()) return std::nullopt;
-      if (trimmed(line_) == "9999") break;
+      if (trimmed(lines_.line()) == "9999") break;
     }
     if (mesh_.elements.empty()) return refuse(0, "the file has no element that is a surface or a solid");
     if (left_out_ > 0)
       report_.warning(
-          spot(0), fmt::format("{} neither surfaces nor solids: left out",
+          lines_.spot(0), fmt::format("{} neither surfaces nor solids: left out",
                                left_out_ == 1 ? "1 element is" : fmt::format("{} elements are", left_out_)));
     mesh_.regions.resize(region_of_.size());
     for (const auto& [material, region] : region_of_) {
@@ -102,27 +97,15 @@ class Reader {
   }
 
  private:
-  bool next() {
-    if (rest_.empty()) return false;
-    ++number_;
-    const std::size_t end = rest_.find('\n');
-    line_ = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    return true;
-  }
-  [[nodiscard]] Spot spot(std::size_t column) const {
-    return {line_.data() + std::min(column, line_.size()), std::max(1, number_),
-            static_cast<int>(column) + 1};
-  }
   std::nullopt_t refuse(std::size_t column, std::string text, Kind kind = Kind::malformed) {
-    return report_.error(spot(column), std::move(text), kind);
+    return report_.error(lines_.spot(column), std::move(text), kind);
   }
   bool fail(std::size_t column, std::string text, Kind kind = Kind::malformed) {
     refuse(column, std::move(text), kind);
     return false;
   }
   std::optional<double> real(std::size_t from, std::size_t count) {
-    const std::string_view word = trimmed(columns(line_, from, count));
+    const std::string_view word = trimmed(columns(lines_.line(), from, count));
     // CalculiX writes what is not computed as such a word.
     if (same_word(word, "nan") || same_word(word, "-nan")) return std::numeric_limits<double>::quiet_NaN();
     const std::optional<double> value = read_number(word);
@@ -131,7 +114,7 @@ class Reader {
   }
 
   void name_material() {
-    const std::string_view rest = columns(line_, 9, line_.size());
+    const std::string_view rest = columns(lines_.line(), 9, lines_.line().size());
     const std::size_t digits = rest.find_first_of("0123456789");
     if (digits == std::string_view::npos) return;
     // The number has five columns, and the name follows at once.
@@ -150,11 +133,11 @@ class Reader {
   }
 
   bool read_nodes() {
-    const std::optional<std::size_t> width = width_of_numbers(columns(line_, 73, 2));
+    const std::optional<std::size_t> width = width_of_numbers(columns(lines_.line(), 73, 2));
     if (!width) return false;
-    while (next() && columns(line_, 0, 3) != " -3") {
-      const std::optional<long> number = whole(columns(line_, 3, *width));
-      if (columns(line_, 0, 3) != " -1" || !number)
+    while (lines_.next() && columns(lines_.line(), 0, 3) != " -3") {
+      const std::optional<long> number = whole(columns(lines_.line(), 3, *width));
+      if (columns(lines_.line(), 0, 3) != " -1" || !number)
         return fail(0, "a node is expected here, as ' -1', its number and its place");
       Vec3 place;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -171,29 +154,29 @@ class Reader {
   }
 
   bool read_elements() {
-    const std::optional<std::size_t> width = width_of_numbers(columns(line_, 73, 2));
+    const std::optional<std::size_t> width = width_of_numbers(columns(lines_.line(), 73, 2));
     if (!width) return false;
     Type type;
     std::uint32_t region = 0;
     long element = 0;
     std::vector<long> numbers;
-    while (next() && columns(line_, 0, 3) != " -3") {
-      const std::string_view key = columns(line_, 0, 3);
+    while (lines_.next() && columns(lines_.line(), 0, 3) != " -3") {
+      const std::string_view key = columns(lines_.line(), 0, 3);
       if (key == " -1") {
-        const std::optional<long> kind = whole(columns(line_, 3 + *width, 5));
+        const std::optional<long> kind = whole(columns(lines_.line(), 3 + *width, 5));
         type = type_of(kind.value_or(0));
         if (type.nodes == 0) return fail(3 + *width, "an element of a type that is not known (1 to 12 are)");
-        const long material = whole(columns(line_, 13 + *width, 5)).value_or(0);
+        const long material = whole(columns(lines_.line(), 13 + *width, 5)).value_or(0);
         region =
             region_of_.try_emplace(material, static_cast<std::uint32_t>(region_of_.size())).first->second;
-        element = whole(columns(line_, 3, *width)).value_or(0);
+        element = whole(columns(lines_.line(), 3, *width)).value_or(0);
         numbers.clear();
         continue;
       }
       if (key != " -2" || type.nodes == 0)
         return fail(0, "the nodes of an element are expected here, as ' -2' and their numbers");
-      for (std::size_t at = 3; at < line_.size() && numbers.size() < type.nodes; at += *width) {
-        const std::string_view word = trimmed(columns(line_, at, *width));
+      for (std::size_t at = 3; at < lines_.line().size() && numbers.size() < type.nodes; at += *width) {
+        const std::string_view word = trimmed(columns(lines_.line(), at, *width));
         if (word.empty()) break;
         const std::optional<long> number = whole(word);
         if (!number || !nodes_.contains(*number))
@@ -227,8 +210,8 @@ class Reader {
 
   // Of the results that follow: the step, and which increment of it.
   void note_step() {
-    increment_ = whole(columns(line_, 36, 12)).value_or(1);
-    step_ = whole(columns(line_, 48, 12)).value_or(0);
+    increment_ = whole(columns(lines_.line(), 36, 12)).value_or(1);
+    step_ = whole(columns(lines_.line(), 48, 12)).value_or(0);
   }
 
   // Results of one number belong together; from 1 in the order of the file.
@@ -241,27 +224,27 @@ class Reader {
   }
 
   bool read_results() {
-    const std::optional<std::size_t> width = width_of_numbers(columns(line_, 73, 2));
+    const std::optional<std::size_t> width = width_of_numbers(columns(lines_.line(), 73, 2));
     if (!width) return false;
-    const int set = set_of(whole(columns(line_, 58, 5)).value_or(1));
+    const int set = set_of(whole(columns(lines_.line(), 58, 5)).value_or(1));
     std::string name;
     std::size_t count = 0;  // of components that are not reckoned from others, which come first
     FieldMesh::Field field;
-    while (next() && columns(line_, 0, 3) != " -3") {
-      const std::string_view key = columns(line_, 0, 3);
+    while (lines_.next() && columns(lines_.line(), 0, 3) != " -3") {
+      const std::string_view key = columns(lines_.line(), 0, 3);
       if (key == " -4") {
-        name = std::string(trimmed(columns(line_, 5, 8)));
+        name = std::string(trimmed(columns(lines_.line(), 5, 8)));
       } else if (key == " -5") {
-        if (!trimmed(columns(line_, 33, 5)).starts_with('1')) ++count;
+        if (!trimmed(columns(lines_.line(), 33, 5)).starts_with('1')) ++count;
       } else if (key == " -1") {
-        const std::optional<long> number = whole(columns(line_, 3, *width));
+        const std::optional<long> number = whole(columns(lines_.line(), 3, *width));
         const auto node = number ? nodes_.find(*number) : nodes_.end();
         if (node == nodes_.end()) return fail(3, "values of a node that is not there");
         if (field.values.empty())
           field.values.resize(count * mesh_.nodes.size(), std::numeric_limits<float>::quiet_NaN());
         for (std::size_t k = 0; k < count; ++k) {
           // Six a line; others follow in lines of their own.
-          if (k > 0 && k % 6 == 0 && !(next() && columns(line_, 0, 3) == " -2"))
+          if (k > 0 && k % 6 == 0 && !(lines_.next() && columns(lines_.line(), 0, 3) == " -2"))
             return fail(0, "more values of this node are expected here");
           const std::optional<double> value = real(3 + *width + 12 * (k % 6), 12);
           if (!value) return false;
@@ -278,8 +261,7 @@ class Reader {
   }
 
   TextReport& report_;
-  std::string_view rest_, line_;
-  int number_ = 0;
+  TextLines lines_;
   std::unordered_map<long, std::uint32_t> nodes_;
   std::map<long, std::uint32_t> region_of_;
   std::map<long, std::string> materials_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/number_text.h"
+#include "core/text_lines.h"
 #include "core/text_report.h"
 #include "core/words.h"
 
@@ -18,13 +19,6 @@ namespace selvage::formats::inp {
 namespace {
 
 using fem::SolvedDeck;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
-    text.remove_suffix(1);
-  return text;
-}
 
 // Names and keywords count in any case.
 std::string key_of(std::string_view text) {
@@ -98,15 +92,16 @@ struct SectionCard {
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : report_(report), rest_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report) : report_(report), lines_(source.bytes()) {}
 
   std::optional<SolvedDeck> read() {
-    while (next()) {
-      if (line_.starts_with("**")) {
-        comment_ = trimmed(line_.substr(2));
+    while (lines_.next()) {
+      const std::string_view line = lines_.line();
+      if (line.starts_with("**")) {
+        comment_ = trimmed(line.substr(2));
         continue;
       }
-      if (line_.starts_with('*') ? !begin_card() : !take_data()) return std::nullopt;
+      if (line.starts_with('*') ? !begin_card() : !take_data()) return std::nullopt;
       comment_ = {};
     }
     if (!end_elastic() || !join_sections()) return std::nullopt;
@@ -114,15 +109,7 @@ class Reader {
   }
 
  private:
-  bool next() {
-    if (rest_.empty()) return false;
-    ++number_;
-    const std::size_t end = rest_.find('\n');
-    line_ = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    return true;
-  }
-  [[nodiscard]] Spot spot() const { return {line_.data(), std::max(1, number_), 1}; }
+  [[nodiscard]] Spot spot() const { return lines_.spot(); }
   bool fail(const Spot& spot, std::string text, Kind kind = Kind::malformed) {
     report_.error(spot, std::move(text), kind);
     return false;
@@ -130,7 +117,7 @@ class Reader {
 
   bool begin_card() {
     if (!end_elastic()) return false;
-    card_ = card_of(line_);
+    card_ = card_of(lines_.line());
     is_first_ = true;
     const std::string& word = card_.word;
     if (word == "INCLUDE")
@@ -178,7 +165,7 @@ class Reader {
   }
 
   bool take_data() {
-    if (trimmed(line_).empty()) return true;
+    if (trimmed(lines_.line()).empty()) return true;
     const std::string& word = card_.word;
     const bool is_first = std::exchange(is_first_, false);
     if (word == "ELEMENT") return take_element();
@@ -193,7 +180,7 @@ class Reader {
   }
 
   bool take_element() {
-    const auto values = numbers(line_);
+    const auto values = numbers(lines_.line());
     if (!values) return false;
     pending_.insert(pending_.end(), values->begin(), values->end());
     if (pending_.size() < nodes_ + 1) return true;
@@ -214,7 +201,7 @@ class Reader {
   bool take_set() {
     std::vector<long>& set = sets_[key_of(card_.value("ELSET"))];
     if (card_.values.contains("GENERATE")) {
-      const auto range = numbers(line_);
+      const auto range = numbers(lines_.line());
       if (!range) return false;
       if (range->size() < 2) return fail(spot(), "a first and a last number are expected here");
       const long first = number_of((*range)[0]), last = number_of((*range)[1]),
@@ -223,7 +210,7 @@ class Reader {
         if (number >= first && number <= last && (number - first) % step == 0) set.push_back(number);
       return true;
     }
-    for (const std::string_view part : split(line_, ',')) {
+    for (const std::string_view part : split(lines_.line(), ',')) {
       const std::string_view word = trimmed(part);
       if (word.empty()) continue;
       if (const std::optional<double> number = read_number(word))
@@ -238,7 +225,7 @@ class Reader {
   }
 
   bool take_law() {
-    const auto values = numbers(line_);
+    const auto values = numbers(lines_.line());
     if (!values) return false;
     if (card_.word == "ELASTIC") {
       if (elastic_.empty()) elastic_spot_ = spot();
@@ -276,8 +263,8 @@ class Reader {
   }
 
   bool take_distribution() {
-    const bool is_default = trimmed(line_).starts_with(',');
-    const auto values = numbers(line_);
+    const bool is_default = trimmed(lines_.line()).starts_with(',');
+    const auto values = numbers(lines_.line());
     if (!values) return false;
     if (values->size() < 7) return fail(spot(), "an element and two directions are expected here");
     const auto at = [&](std::size_t k) { return Vec3((*values)[k], (*values)[k + 1], (*values)[k + 2]); };
@@ -287,11 +274,11 @@ class Reader {
 
   bool take_orientation() {
     const std::string name = key_of(card_.value("NAME"));
-    if (!read_number(trimmed(split(line_, ',').front()))) {
-      orientations_[name] = {key_of(split(line_, ',').front()), {}};
+    if (!read_number(trimmed(split(lines_.line(), ',').front()))) {
+      orientations_[name] = {key_of(split(lines_.line(), ',').front()), {}};
       return true;
     }
-    const auto values = numbers(line_);
+    const auto values = numbers(lines_.line());
     if (!values) return false;
     if (values->size() < 6) return fail(spot(), "two directions are expected here");
     orientations_[name] = {
@@ -300,7 +287,7 @@ class Reader {
   }
 
   bool take_temperature(bool is_first) {
-    const std::vector<std::string_view> parts = split(line_, ',');
+    const std::vector<std::string_view> parts = split(lines_.line(), ',');
     const std::optional<double> value = parts.size() > 1 ? read_number(trimmed(parts[1])) : std::nullopt;
     if (!value) return fail(spot(), "a set and its temperature are expected here");
     const bool is_initial = card_.word != "TEMPERATURE";
@@ -359,8 +346,8 @@ class Reader {
   }
 
   TextReport& report_;
-  std::string_view rest_, line_, comment_;
-  int number_ = 0;
+  TextLines lines_;
+  std::string_view comment_;
   Card card_;
   bool is_first_ = false;  // no line of data of this card was read
   std::string material_;

@@ -5,19 +5,12 @@
 #include <set>
 
 #include "core/readable.h"
+#include "core/text_lines.h"
 #include "formats/knitout/machine.h"
 
 namespace selvage::formats::knitout {
 
 namespace {
-
-// The line without its end, cut from the front of `rest`.
-std::string_view next_line(std::string_view& rest) {
-  const std::size_t newline = rest.find('\n');
-  const std::string_view line = rest.substr(0, newline);
-  rest.remove_prefix(newline == std::string_view::npos ? rest.size() : newline + 1);
-  return line;
-}
 
 class Runner {
  public:
@@ -49,11 +42,12 @@ class Runner {
 }  // namespace
 
 std::optional<Program> run_program(const Source& source, TextReport& report) {
-  std::string_view rest = source.bytes();
-  if (!read_first_line(next_line(rest), report)) return std::nullopt;
+  TextLines lines(source.bytes());
+  lines.next();
+  if (!read_first_line(lines.line(), report)) return std::nullopt;
   Program program;
   Runner runner(program, report);
-  for (int number = 2; !rest.empty() && !report.is_full(); ++number) runner.line(next_line(rest), number);
+  while (!report.is_full() && lines.next()) runner.line(lines.line(), lines.number());
   runner.finish();
   return program;
 }

@@ -9,16 +9,6 @@
 
 namespace selvage::formats::tg3 {
 
-namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t from = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  text.remove_prefix(from);
-  return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
-}
-
-}  // namespace
-
 void Fields::error(const Message& message, TextPlace otherwise) const {
   const TextPlace place = message.place.line > 0 ? message.place : otherwise;
   report_.error(spot_at(source_, place), message.text, message.kind);

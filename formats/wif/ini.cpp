@@ -42,12 +42,6 @@ Spot spot_of(const char* at, std::string_view line, int number) {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t from = std::min(text.find_first_not_of(" \t"), text.size());
-  text.remove_prefix(from);
-  return text.substr(0, text.find_last_not_of(" \t") + 1);
-}
-
 const Entry* Section::find(std::string_view key) const {
   const auto found = std::find_if(entries.begin(), entries.end(),
                                   [&](const Entry& entry) { return same_word(entry.key, key); });

@@ -52,9 +52,6 @@ class Ini {
   Spot end_;
 };
 
-// Without blanks and tabs at both ends.
-std::string_view trimmed(std::string_view text);
-
 // Is there a line [WIF] in these bytes?
 bool has_wif_section(std::string_view head);
 

@@ -19,6 +19,9 @@ constexpr bool same_word(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
+// Without the blanks, tabs and line ends at both ends.
+std::string_view trimmed(std::string_view text);
+
 // What stands between separators; behind a last one stands nothing.
 std::vector<std::string_view> split(std::string_view text, char separator);
 // What stands between blanks, or between other separators, and is not empty.

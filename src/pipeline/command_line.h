@@ -1,8 +1,7 @@
-// What the program understands: its subcommands and their options, in one table. The command line's parser
-// and its help, defaults, and the settings that `--resume` compares are made from it.
+// What the program understands: its subcommands and their options. The command line's parser and its help,
+// defaults, and the settings that `--resume` compares are made from their table.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -10,8 +9,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "core/option.h"
-#include "pipeline/options.h"
+#include "pipeline/option_table.h"
 
 namespace selvage::pipeline {
 
@@ -23,15 +21,6 @@ struct Subcommand {
 // In the order of help.
 std::span<const Subcommand> all_commands();
 
-// An option of some subcommands. Several rows may have one name, for different ones.
-struct Row {
-  std::vector<Command> commands;
-  Option option;
-  // Puts a value, as Argument::canonical() gives it, where it belongs; error (usage): it is none. Null: it is
-  // a format's own.
-  std::function<Status(Options&, const std::string&)> take;
-  std::string group{};  // its heading in help
-};
 // Those of a subcommand, in the order of help, with what the formats that it can write declare.
 std::vector<const Row*> rows_of(Command command);
 

@@ -4,6 +4,7 @@ SELVAGE_BUILD: the build folder that is installed. The package, which takes root
 """
 
 import json
+import math
 import os
 import pathlib
 import re
@@ -66,7 +67,7 @@ class Installed(Case):
         files = set(files_below(self.prefix))
         outside = {name for name in files if not name.startswith(("include/", "share/selvage/", "lib/cmake/"))}
         self.assertEqual(outside, {
-            "bin/selvage", "bin/selvage-homogenize", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
+            "bin/selvage", "bin/selvage-homogenize", "bin/selvage-permeability", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
             "lib/selvage/selvage_embree.so", "lib/selvage/selvage_hdf5.so", "lib/selvage/selvage_minizip.so", "lib/selvage/selvage_muparser.so",
             "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
             *(["lib/selvage/three.module.min.js"] if HAS_PAGES else []),
@@ -122,6 +123,20 @@ class Installed(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         stiffness = np.array(json.loads(done.stdout)["stiffness"])
         np.testing.assert_allclose(stiffness[:2, :2], [[1200, 400], [400, 1200]], rtol=1e-6)
+
+    def test_permeability_of_what_is_installed(self):
+        """Along cylinders in squares, 20 % of the cell: the series of Drummond and Tahir (1984), which at that share is good to 1e-3."""
+        share = 0.2
+        radius = math.sqrt(share / math.pi)
+        (self.folder / "array.txt").write_text(
+            f"fabric 1\nunits mm\ntolerance 1e-4\nthread fibre\n  section circle {radius!r}\nend\n"
+            "yarn one fibre\n  path chord\n    -1 0 0\n    2 0 0\n  end\nend\n"
+            "cell 0 -0.5 -0.5  0.2 0.5 0.5\n  periodic x y z\nend\n")
+        done = subprocess.run([self.prefix / "bin/selvage-permeability", "array.txt", "--segments", "12", "--json", "-"],
+                              env=environment(), cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        series = radius**2 / (4 * share) * (-math.log(share) - 1.476336 + 2 * share - share**2 / 2 - 0.0509713 * share**4)
+        self.assertAlmostEqual(json.loads(done.stdout)["permeability_mm2"][0][0], series, delta=0.005 * series)
 
     def test_an_incomplete_installation_is_told(self):
         copy = self.folder / "copy"
