@@ -30,12 +30,13 @@ Result<WriteFacts> write(const fem::Raster& raster, OutputFile& output) {
     datasets.push_back(std::move(one));
   }
   const fem::PhaseColumns phases = fem::columns_of(raster.phases);
-  const Vec3 lengths = raster.high - raster.low;
+  const Vec3 lengths = raster.lengths();
   datasets.push_back(texts("phase_names", phases.names));
   datasets.push_back(texts("phase_materials", phases.materials));
   datasets.push_back(numbers("phase_fractions", phases.fractions.data(), phases.fractions.size()));
-  datasets.push_back(numbers("origin", raster.low.data(), 3));
+  datasets.push_back(numbers("origin", raster.origin.data(), 3));
   datasets.push_back(numbers("lengths", lengths.data(), 3));
+  datasets.push_back({"vectors", Dataset::Type::float64, {3, 3}, raster.edges.data()});
   datasets.push_back(texts("title", {raster.title}));
   const Result<std::string> bytes = call(module_table<Hdf5Module>("hdf5", "selvage_hdf5"), &Hdf5Module::file,
                                          std::span<const Dataset>(datasets));

@@ -24,7 +24,7 @@ Result<WriteFacts> write(const fem::Raster& raster, OutputFile& output) {
         bytes_of(field.data, field.bytes));
   }
   const fem::PhaseColumns phases = fem::columns_of(raster.phases);
-  const Vec3 lengths = raster.high - raster.low;
+  const Vec3 lengths = raster.lengths();
   const std::vector<std::string> title = {raster.title};
   const TextArray name_array = text_array(phases.names), material_array = text_array(phases.materials),
                   title_array = text_array(title);
@@ -32,8 +32,9 @@ Result<WriteFacts> write(const fem::Raster& raster, OutputFile& output) {
   add("phase_materials", material_array.type, {phases.materials.size()}, material_array.data);
   add("phase_fractions", "<f8", {phases.fractions.size()},
       bytes_of(phases.fractions.data(), phases.fractions.size() * sizeof(double)));
-  add("origin", "<f8", {3}, bytes_of(raster.low.data(), 3 * sizeof(double)));
+  add("origin", "<f8", {3}, bytes_of(raster.origin.data(), 3 * sizeof(double)));
   add("lengths", "<f8", {3}, bytes_of(lengths.data(), 3 * sizeof(double)));
+  add("vectors", "<f8", {3, 3}, bytes_of(raster.edges.data(), sizeof(raster.edges)));
   add("title", title_array.type, {1}, title_array.data);
   const Result<const ZipModule*> module = module_table<ZipModule>("minizip", "selvage_minizip");
   if (!module) return module.error();

@@ -12,6 +12,7 @@
 #include "fem/voxel_grid.h"
 #include "fem/yarn_triangles.h"
 #include "nurbs/divided.h"
+#include "yarn/in_axes.h"
 
 namespace selvage::fem {
 namespace {
@@ -276,9 +277,11 @@ struct VoxelShare {
   std::array<float, 3> along{};
 };
 
-std::vector<VoxelShare> shares_of(const yarn::Body& body, const VoxelGrid& grid, const Vec3& low) {
+// The grid from its corner `low` on, and `own`, the same body, in the coordinates of the axes.
+std::vector<VoxelShare> shares_of(const yarn::Body& body, const yarn::Body& own, const VoxelGrid& grid,
+                                  const Vec3& low, const ObliqueAxes& axes) {
   const Vec3 sides = grid.sides();
-  const Box3 box = yarn::bounds(body);
+  const Box3 box = yarn::bounds(own);
   std::array<std::ptrdiff_t, 3> first{}, last{};
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
@@ -294,7 +297,7 @@ std::vector<VoxelShare> shares_of(const yarn::Body& body, const VoxelGrid& grid,
   const double perimeter = section_perimeter(body, body.surface.first_v());
   const double half = sides.minCoeff() / 2;
   const auto scaled = [&](const Vec3& at) -> Vec3 { return (at - low).cwiseQuotient(sides); };
-  triangulate_yarn(body, std::min(half, perimeter / edges_round), std::min(half, perimeter / edges_along),
+  triangulate_yarn(own, std::min(half, perimeter / edges_round), std::min(half, perimeter / edges_along),
                    [&](const YarnVertex& a, const YarnVertex& b, const YarnVertex& c) {
                      shares.add(scaled(a.at), scaled(b.at), scaled(c.at), b.v);
                    });
@@ -303,9 +306,10 @@ std::vector<VoxelShare> shares_of(const yarn::Body& body, const VoxelGrid& grid,
   shares.finish(
       body.closed_along, body.surface.last_v() - body.surface.first_v(),
       [&](const std::array<std::ptrdiff_t, 3>& at, double share, double v) {
-        const Vec3 middle = low + Vec3(static_cast<double>(at[0]) + 0.5, static_cast<double>(at[1]) + 0.5,
-                                       static_cast<double>(at[2]) + 0.5)
-                                      .cwiseProduct(sides);
+        const Vec3 middle = axes.place(low + Vec3(static_cast<double>(at[0]) + 0.5,
+                                                  static_cast<double>(at[1]) + 0.5,
+                                                  static_cast<double>(at[2]) + 0.5)
+                                                 .cwiseProduct(sides));
         const AxisTable::Place place = table.nearest(middle, v);
         const Eigen::Vector3f along = place.along.cast<float>();
         const auto [i, j, k] = at;
@@ -398,28 +402,26 @@ Result<Raster> rasterize(const fabric::Fabric& fabric, std::span<const yarn::Bod
     return error(Kind::limit,
                  fmt::format("{} yarns are more than the 65535 that phases can tell apart", bodies.size()));
   const fabric::Cell& cell = *fabric.cell;
-  if (!cell.axes.are_of_space())
-    return error(Kind::unsupported,
-                 "fields on voxels are of cells that are boxes, and this one is oblique: `mesh --voxel N` "
-                 "makes "
-                 "hexahedra of it, or a cell by two opposite corners takes its place")
-        .placed(cell.place, fabric.file);
   const Box3 box(cell.low, cell.high);
   const Result<VoxelGrid> grid = make_grid(box, options.count, most_voxels, "voxels");
   if (!grid) return grid.error();
   const double unit = millimetres_per(fabric.units);
   Raster raster;
   raster.count = {grid->count(0), grid->count(1), grid->count(2)};
-  raster.low = box.min() * unit;
-  raster.high = box.max() * unit;
+  const Parallelepiped whole(Box3(box.min() * unit, box.max() * unit), cell.axes);
+  raster.origin = cell.axes.place(whole.box.min());
+  for (int axis = 0; axis < 3; ++axis) raster.edges[static_cast<std::size_t>(axis)] = whole.edge(axis);
   raster.title = fabric.title.value_or("");
   Merger merger(raster);
   raster.phases[0].material = cell.matrix;
+  const yarn::BodiesInAxes own(bodies, cell.axes);
   const auto slots = static_cast<std::size_t>(std::max(options.threads, 1));
   std::vector<std::vector<VoxelShare>> waiting(slots);
   for_each_in_order(
       bodies.size(), slots, options.threads,
-      [&](std::size_t b, std::size_t slot) { waiting[slot] = shares_of(bodies[b], *grid, box.min()); },
+      [&](std::size_t b, std::size_t slot) {
+        waiting[slot] = shares_of(bodies[b], own.list()[b], *grid, box.min(), cell.axes);
+      },
       [&](std::size_t b, std::size_t slot) {
         if (!waiting[slot].empty()) merger.add(bodies[b], waiting[slot]);
         waiting[slot] = {};

@@ -1,4 +1,4 @@
-// A unit cell as fields on a grid of voxels, for methods without elements (FFT): who fills each voxel, by how
+// A unit cell, a box or a parallelepiped, as fields on a grid of voxels, for methods without elements (FFT): who fills each voxel, by how
 // much, and which way the fibres run there. Other than the hexahedra of voxel.h, whose yarns are stairs, it
 // says what share of a voxel on a yarn's surface lies inside.
 #pragma once
@@ -24,11 +24,12 @@ struct RasterPhase {
 };
 
 struct Raster {
-  std::array<std::size_t, 3> count{};            // of voxels along x, y, z
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // the cell, mm
+  std::array<std::size_t, 3> count{};    // of voxels along the cell's three edges: x, y, z of a box
+  Vec3 origin = Vec3::Zero();            // the cell's corner, mm
+  std::array<Vec3, 3> edges = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // from there, mm
   std::string title;
   std::vector<RasterPhase> phases;  // 0: what no yarn fills; then the yarns that enter the cell
-  // One entry a voxel, number (z * count[1] + y) * count[0] + x.
+  // One entry a voxel, number (k * count[1] + j) * count[0] + i of the i-th along the first edge.
   std::vector<std::uint16_t> phase;   // the largest yarn in it where yarns fill half of it or more; else 0
   std::vector<float> yarn_fraction;   // share of it inside yarns, 0 .. 1
   std::vector<float> fibre_fraction;  // share of it that is fibre; NaN where a yarn's is not known
@@ -37,6 +38,7 @@ struct Raster {
   double yarn = 0, fibre = 0;  // shares of the cell; the second may be NaN
   double overlap = 0;          // share of the cell that lies in two yarns
 
+  [[nodiscard]] Vec3 lengths() const { return {edges[0].norm(), edges[1].norm(), edges[2].norm()}; }
   [[nodiscard]] std::size_t voxels() const { return count[0] * count[1] * count[2]; }
 };
 
@@ -48,7 +50,8 @@ struct RasterOptions {
 
 // The fields of the fabric's cell (there must be one). Shares are exact of a polyhedron inside the yarn's
 // surface, which has 256 edges or more round it (a volume too small by 1e-4 to 3e-4): each of its triangles
-// is cut by the planes of the grid, and what is under the pieces summed up. Warnings: fibres of a yarn that
+// is cut by the planes of the grid, and what is under the pieces summed up; in the coordinates of the cell,
+// whose linear map keeps shares. Orientations are those of space. Warnings: fibres of a yarn that
 // are not known; yarns that overlap. Errors: usage (count), limit (more than 2e8 voxels, or 65 535 yarns),
 // geometry (no yarn in the cell).
 Result<Raster> rasterize(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,

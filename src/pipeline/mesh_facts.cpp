@@ -349,7 +349,7 @@ std::string forming_in_words(const fem::Forming& forming) {
 
 Json raster_json(const fem::Raster& raster) {
   return {{"count", raster.count},
-          {"lengths", point_json(Vec3(raster.high - raster.low))},
+          {"lengths", point_json(raster.lengths())},
           {"yarn_fraction", raster.yarn},
           {"fibre_fraction", if_true(!std::isnan(raster.fibre), raster.fibre)},
           {"overlap_fraction", raster.overlap},

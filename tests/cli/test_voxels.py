@@ -42,6 +42,8 @@ class Voxels(Case):
             np.testing.assert_array_equal(file["phase_fractions"], arrays["phase_fractions"])
             np.testing.assert_array_equal(file["origin"], arrays["origin"])
             np.testing.assert_allclose(file["lengths"], voxels["lengths"])
+            np.testing.assert_array_equal(file["vectors"], arrays["vectors"])
+            np.testing.assert_allclose(arrays["vectors"], np.diag(voxels["lengths"]), atol=1e-15)
             self.assertEqual(file["title"][0].decode(), str(arrays["title"][0]))
             self.assertEqual(set(np.unique(arrays["phase"])), set(range(len(names))))
             self.assertAlmostEqual(arrays["yarn_fraction"].mean(dtype=float), voxels["yarn_fraction"], delta=1e-6)
@@ -55,7 +57,7 @@ class Voxels(Case):
         h5, npz, _ = self.made(SAMPLES / "cell_plain.txt", 24)
         self.assertEqual(subprocess.run(["python3", "-m", "zipfile", "-t", npz], capture_output=True).returncode, 0)
         with h5py.File(h5) as file:
-            self.assertEqual(len(file), len(FIELDS) + 6)
+            self.assertEqual(len(file), len(FIELDS) + 7)
 
     def test_fractions_are_those_of_the_volumes(self):
         """Of each yarn, to 1e-3 of its volume, those that the faces of the cell cut, too (`convert --cut`: OpenCASCADE's solids)."""
@@ -73,6 +75,30 @@ class Voxels(Case):
                 exact = volumes.pop(phase["name"])
                 self.assertAlmostEqual(phase["fraction"] * size / exact, 1, delta=1e-3, msg=f"{name} {phase['name']}")
             self.assertFalse(volumes)
+
+    def test_an_oblique_cell(self):
+        """A straight elliptic tow along the sum of both vectors of a rhombic cell: its share by hand, its direction in space, and the
+        voxels that have their middles in the ellipse."""
+        text = self.folder / "rhomb.txt"
+        text.write_text("fabric 1\ntolerance 1e-4\nthread tow\n  section ellipse 0.6 0.4\nend\n"
+                        "yarn one tow\n  path chord\n    -3 0.1 0.3\n    6 0.1 0.3\n  end\nend\n"
+                        "cell vectors 2 -1 0  2 1 0  0 0 0.6 at -0.5 0 0\n  periodic x y\nend\n")
+        h5, npz, report = self.made(text, 48)
+        with np.load(npz) as arrays, h5py.File(h5) as file:
+            np.testing.assert_array_equal(file["vectors"], arrays["vectors"])
+            np.testing.assert_allclose(arrays["vectors"], [[2, -1, 0], [2, 1, 0], [0, 0, 0.6]], atol=1e-12)
+            np.testing.assert_allclose(arrays["origin"], [-0.5, 0, 0], atol=1e-12)
+            shares, phase = arrays["yarn_fraction"], arrays["phase"]
+            self.assertAlmostEqual(shares.mean(dtype=float) * 4 * 0.6, 4 * np.pi * 0.3 * 0.2, delta=4e-4)  # one yarn along the diagonal
+            k, j, i = np.indices(shares.shape)
+            places = arrays["origin"] + sum((index + 0.5)[..., None] / size * vector for index, size, vector in
+                                            zip((i, j, k), reversed(shares.shape), arrays["vectors"]))
+            radius = np.hypot((places[..., 1] - 0.1) / 0.3, (places[..., 2] - 0.3) / 0.2)
+            self.assertTrue((phase[radius < 0.85] == 1).all())
+            self.assertTrue((phase[radius > 1.15] == 0).all())
+            along = arrays["orientation"][shares > 0]
+            np.testing.assert_allclose(np.abs(along), np.broadcast_to([1, 0, 0], along.shape), atol=1e-6)
+        np.testing.assert_allclose(report["voxels"]["lengths"], [5**0.5, 5**0.5, 0.6])
 
     def test_the_yarns_run_as_they_run(self):
         _, npz, _ = self.made(SAMPLES / "cell_plain.txt", 40)
