@@ -1,4 +1,4 @@
-// Yarns as BEAM188, each beam with a node that tells where its width lies.
+// Yarns as BEAM188, each beam with a node that tells where its width lies, or as LINK180.
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -15,6 +15,10 @@ namespace {
 void write_beam_sections(TextBuffer& text, const fem::BeamModel& beams) {
   for (std::size_t k = 0; k < beams.sections.size(); ++k) {
     const fem::BeamSection& s = beams.sections[k];
+    if (beams.are_trusses) {
+      text << "SECTYPE," << k + 1 << ",LINK\nSECDATA," << s.area << '\n';
+      continue;
+    }
     text << "SECTYPE," << k + 1 << ",BEAM,";
     if (s.shape == fem::BeamSection::Shape::circle)
       text << "CSOLID\nSECDATA," << (s.width + s.height) / 4 << '\n';
@@ -26,7 +30,7 @@ void write_beam_sections(TextBuffer& text, const fem::BeamModel& beams) {
 std::vector<Vec3> places_of(const fem::BeamModel& beams) {
   const fem::Mesh& mesh = beams.mesh;
   std::vector<Vec3> places = mesh.nodes;
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+  for (std::size_t e = 0; !beams.are_trusses && e < mesh.elements.size(); ++e) {
     const Vec3 &a = mesh.nodes[mesh.elements[e][0]], &b = mesh.nodes[mesh.elements[e][1]];
     places.emplace_back((a + b) / 2 + (b - a).norm() * mesh.across[e]);
   }
@@ -40,9 +44,11 @@ void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams) {
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       write_element_head(text, {.material = fem::material_of(mesh, region) + 1,
                                 .section = beams.section_of[e] + 1,
-                                .nodes = 3,
+                                .nodes = beams.are_trusses ? 2U : 3U,
                                 .number = e + 1});
-      put_numbers(text, std::vector{mesh.elements[e][0], mesh.elements[e][1], mesh.nodes.size() + e}, 10, 8);
+      std::vector nodes = {mesh.elements[e][0], mesh.elements[e][1]};
+      if (!beams.are_trusses) nodes.push_back(mesh.nodes.size() + e);
+      put_numbers(text, nodes, 10, 8);
     }
   text << "        -1\n";
 }
@@ -97,8 +103,8 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   TextBuffer text(output);
   text << "/COM,ANSYS mesh archive by Selvage: mm, N, MPa, tonne, s. Read it with CDREAD,DB\n";
   fem::write_yarn_names(text, beams.mesh, names, "!", 100);
-  // Cubic between its nodes (KEYOPT 3), as beams bend.
-  text << "/PREP7\nET,1,188\nKEYOPT,1,3,3\n";
+  // Beams are cubic between their nodes (KEYOPT 3), as they bend.
+  text << "/PREP7\n" << (beams.are_trusses ? "ET,1,180\n" : "ET,1,188\nKEYOPT,1,3,3\n");
   write_beam_sections(text, beams);
   write_node_block(text, places_of(beams));
   write_beam_elements(text, beams);
@@ -108,7 +114,7 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   text << "FINISH\n";
   Result<WriteFacts> facts = finished(text,
                                       {{"nodes", beams.mesh.nodes.size()},
-                                       {"BEAM188", beams.mesh.elements.size()},
+                                       {beams.are_trusses ? "LINK180" : "BEAM188", beams.mesh.elements.size()},
                                        {"beam sections", beams.sections.size()}},
                                       {{"contact pairs", beams.contacts.size()}});
   if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an ANSYS archive of beams");

@@ -1,4 +1,4 @@
-// Yarns as beams with their sections, in a deck that Abaqus takes (B31), or CalculiX (B32R).
+// Yarns as beams with their sections, in a deck that Abaqus takes (B31), or CalculiX (B32R), or as trusses (T3D2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,6 +26,7 @@ struct Group {
 bool serves(const fem::BeamModel& beams, const Group& group, std::size_t element) {
   constexpr double near = 0.9998, steepest = 0.7;  // cosines: one degree; to the beam
   if (beams.section_of[element] != group.section) return false;
+  if (beams.are_trusses) return true;
   const Vec3& along = beams.mesh.along[element];
   if (std::abs(group.n1.dot(along)) > steepest) return false;
   if (beams.sections[group.section].shape == Shape::circle) return true;
@@ -49,8 +50,8 @@ std::vector<Group> groups_of(const fem::BeamModel& beams) {
   return groups;
 }
 
-std::string_view beam_type(bool for_calculix) {
-  return for_calculix ? "B32R" : "B31";
+std::string_view beam_type(const fem::BeamModel& beams, bool for_calculix) {
+  return beams.are_trusses ? "T3D2" : for_calculix ? "B32R" : "B31";
 }
 
 std::string name_of_group(std::size_t k) {
@@ -63,11 +64,12 @@ void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams, const fe
                          const std::vector<Group>& groups, bool for_calculix, const fem::Forming* forming) {
   const fem::Mesh& mesh = beams.mesh;
   text << (forming == nullptr ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
+  const bool has_middles = for_calculix && !beams.are_trusses;
   const auto write_node = [&](std::size_t number, const Vec3& p) {
     text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
   };
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) write_node(n + 1, mesh.nodes[n]);
-  for (std::size_t e = 0; for_calculix && e < mesh.elements.size(); ++e)
+  for (std::size_t e = 0; has_middles && e < mesh.elements.size(); ++e)
     write_node(mesh.nodes.size() + e + 1,
                (mesh.nodes[mesh.elements[e][0]] + mesh.nodes[mesh.elements[e][1]]) / 2);
   if (forming != nullptr) {
@@ -75,10 +77,10 @@ void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams, const fe
     text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
   }
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    text << "*ELEMENT, TYPE=" << beam_type(for_calculix) << ", ELSET=" << names.of(i) << '\n';
+    text << "*ELEMENT, TYPE=" << beam_type(beams, for_calculix) << ", ELSET=" << names.of(i) << '\n';
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e) {
       text << e + 1 << ", " << mesh.elements[e][0] + 1 << ", ";
-      if (for_calculix) text << mesh.nodes.size() + e + 1 << ", ";
+      if (has_middles) text << mesh.nodes.size() + e + 1 << ", ";
       text << mesh.elements[e][1] + 1 << '\n';
     }
   }
@@ -166,7 +168,10 @@ void write_beam_sections(TextBuffer& text, const fem::BeamModel& beams, const st
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const fem::BeamSection& section = beams.sections[groups[k].section];
     const std::size_t m = fem::material_of(mesh, mesh.regions[groups[k].region]);
-    if (for_calculix)
+    if (beams.are_trusses)
+      text << "*SOLID SECTION, ELSET=" << name_of_group(k) << ", MATERIAL=" << names[m] << '\n'
+           << real(section.area) << '\n';
+    else if (for_calculix)
       write_calculix_section(text, k, groups[k], section, names[m]);
     else
       write_abaqus_section(text, k, groups[k], section, mesh.materials[m], names[m]);
@@ -192,6 +197,11 @@ void write_contacts(TextBuffer& text, const fem::BeamModel& beams, const fem::De
 }
 
 void write_beam_step(TextBuffer& text, const fem::BeamModel& beams) {
+  if (beams.are_trusses) {
+    text << "** No step: chains of trusses have no stiffness across until they are tight; --deck explicit "
+            "writes one.\n";
+    return;
+  }
   text
       << "** A small tension to begin with: every yarn is clamped at its start (a ring at one node), and its "
          "end (the\n** node across) pulled by a thousandth of its length.\n*STEP\n*STATIC\n*BOUNDARY\n";
@@ -247,8 +257,8 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   }
   Result<WriteFacts> facts = finished(text,
                                       {{"nodes", beams.mesh.nodes.size()},
-                                       {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
-                                       {"beam sections", groups.size()}},
+                                       {std::string(beam_type(beams, for_calculix)), beams.mesh.elements.size()},
+                                       {beams.are_trusses ? "areas" : "beam sections", groups.size()}},
                                       {{"contact pairs", beams.contacts.size()}});
   if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an Abaqus deck of beams");
   return facts;

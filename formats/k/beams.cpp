@@ -1,4 +1,4 @@
-// Yarns as beams of LS-DYNA: resultants (Belytschko and Schwer), a part for each section of a yarn.
+// Yarns as beams of LS-DYNA: resultants (Belytschko and Schwer), or trusses; a part for each section of a yarn.
 #include "fem/beams.h"
 
 #include <algorithm>
@@ -52,8 +52,11 @@ void write_beam_parts(TextBuffer& text, const fem::BeamModel& beams, const BeamP
     const double nu = fem::orthotropic(mesh.materials[material]).nu12;
     const double share = moduli.shear / (moduli.young / (2 * (1 + nu)));
     text << "*SECTION_BEAM\n";
-    put_integers(text, {k + 1, 2});
-    put_reals(text, {s.area, s.i11, s.i22, share * s.torsion, shear_share * share * s.area});
+    put_integers(text, {k + 1, beams.are_trusses ? 3U : 2U});
+    if (beams.are_trusses)
+      put_reals(text, {s.area, 0, 0});
+    else
+      put_reals(text, {s.area, s.i11, s.i22, share * s.torsion, shear_share * share * s.area});
     text << "*PART_CONTACT\n" << names.of(part.region) << '\n';
     put_integers(text, {k + 1, k + 1, material + 1});
     put_reals(text, {0, 0, 0, 0, 2 * beams.radii[part.region]});  // the thickness in contact
@@ -70,12 +73,13 @@ void write_beam_materials(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
-void write_beam_elements(TextBuffer& text, const fem::Mesh& mesh, const BeamParts& parts) {
-  text << "*ELEMENT_BEAM_ORIENTATION\n";
+void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams, const BeamParts& parts) {
+  const fem::Mesh& mesh = beams.mesh;
+  text << (beams.are_trusses ? "*ELEMENT_BEAM\n" : "*ELEMENT_BEAM_ORIENTATION\n");
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     put_right(text, {e + 1, parts.of_element[e] + 1, mesh.elements[e][0] + 1, mesh.elements[e][1] + 1}, 8);
     text << '\n';
-    put_reals(text, {mesh.across[e].x(), mesh.across[e].y(), mesh.across[e].z()});
+    if (!beams.are_trusses) put_reals(text, {mesh.across[e].x(), mesh.across[e].y(), mesh.across[e].z()});
   }
 }
 
@@ -124,7 +128,7 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_nodes(text, beams.mesh);
   write_beam_parts(text, beams, parts, names);
   write_beam_materials(text, beams.mesh);
-  write_beam_elements(text, beams.mesh, parts);
+  write_beam_elements(text, beams, parts);
   write_beam_sets(text, beams, parts, names);
   if (options.forming != nullptr)
     write_forming(text, *options.forming,
@@ -140,7 +144,7 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   text << "*END\n";
   Result<WriteFacts> facts = finished(text,
                                       {{"nodes", beams.mesh.nodes.size()},
-                                       {"beams", beams.mesh.elements.size()},
+                                       {beams.are_trusses ? "trusses" : "beams", beams.mesh.elements.size()},
                                        {"parts", parts.list.size()}},
                                       {{"contact pairs", beams.contacts.size()}});
   if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an LS-DYNA file of beams");

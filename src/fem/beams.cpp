@@ -154,6 +154,7 @@ Result<BeamModel> make_beams(const fabric::Fabric& fabric, std::span<const yarn:
       bodies.size(), options.threads,
       [&](std::size_t i) { chains[i] = chain_of(bodies[i], scale, options.size); }, options.progress);
   BeamModel beams;
+  beams.are_trusses = options.trusses;
   beams.mesh.shape = Mesh::Shape::beam;
   beams.mesh.title = fabric.title.value_or("");
   for (std::size_t i = 0; i < bodies.size(); ++i) append(beams, bodies[i], chains[i], scale);

@@ -32,10 +32,12 @@ struct BeamModel {
   std::vector<std::size_t> section_of;  // of each element
   std::vector<double> radii;            // of each region, mm: half of its thickness, for contact
   std::vector<BeamContact> contacts;    // by a, then b
+  bool are_trusses = false;             // of each section its area alone counts
 };
 
 struct BeamOptions {
   double size = 0;  // the longest beam, file units; 0: four times the yarn's thickness
+  bool trusses = false;
   int threads = 1;
   std::function<void(std::size_t done, std::size_t total)> progress{};  // may be empty: yarns
 };

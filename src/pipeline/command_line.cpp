@@ -111,7 +111,9 @@ static Result<Command> done_by_sweep(const Given& given) {
 // What is of tetrahedra alone.
 static Status check_elements(const Options& options) {
   if (options.elements == Elements::tetrahedra) return {};
-  const std::string_view word = options.elements == Elements::hexahedra ? "hex" : "beam";
+  const std::string_view word = options.elements == Elements::hexahedra ? "hex"
+                                : options.elements == Elements::beams   ? "beam"
+                                                                        : "truss";
   const auto refused = [&](std::string_view name) {
     return error(Kind::usage,
                  fmt::format("{} is of tetrahedra: leave it out with --elements {}", name, word));

@@ -112,6 +112,7 @@ void make_beams(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilde
   Diagnostics diagnostics;
   Result<fem::BeamModel> beams = fem::make_beams(fabric, *bodies, fabric.units,
                                                  {.size = job.options.size,
+                                                  .trusses = job.options.elements == Elements::trusses,
                                                   .threads = static_cast<int>(job.threads),
                                                   .progress = job.progress_of("beams of yarn")},
                                                  diagnostics);
@@ -157,7 +158,7 @@ void plan_forming(Job& job, Meshes& all) {
 Meshes make(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder, bool wants_mesh,
             bool wants_raster) {
   Meshes all;
-  if (job.options.elements == Elements::beams) {
+  if (are_lines(job.options.elements)) {
     make_beams(job, fabric, builder, all);
     return all;
   }

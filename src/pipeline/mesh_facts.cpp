@@ -290,6 +290,7 @@ Json beams_json(const fem::BeamModel& beams) {
   };
   return {{"nodes", mesh.nodes.size()},
           {"beams", mesh.elements.size()},
+          {"bend", !beams.are_trusses},
           {"regions", list_json(mesh.regions, yarn_json)},
           {"sections", list_json(beams.sections, section_json)},
           {"contact_pairs", list_json(beams.contacts, contact_json)}};
@@ -299,7 +300,8 @@ std::string beams_in_words(const fem::BeamModel& beams) {
   const auto counted = [](std::size_t count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
-  std::string text = fmt::format("{} with {}", counted(beams.mesh.elements.size(), "beam"),
+  const std::string_view what = beams.are_trusses ? "truss element" : "beam";
+  std::string text = fmt::format("{} with {}", counted(beams.mesh.elements.size(), what),
                                  counted(beams.sections.size(), "section"));
   std::size_t varying = 0, most = 0;
   for (const fem::Region& region : beams.mesh.regions) {
@@ -309,8 +311,8 @@ std::string beams_in_words(const fem::BeamModel& beams) {
   }
   if (varying > 0)
     text +=
-        fmt::format("; the section varies along {} and is that of each beam's middle: {} stations at most",
-                    counted(varying, "yarn"), most);
+        fmt::format("; the section varies along {} and is that of each {}'s middle: {} stations at most",
+                    counted(varying, "yarn"), what, most);
   return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
 }
 

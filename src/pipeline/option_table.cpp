@@ -316,9 +316,11 @@ void of_a_mesh(OptionTable& t) {
   constexpr std::string_view of_tetrahedra = "is of tetrahedra, and voxels are hexahedra of eight nodes";
   t.choice(
        {mesh}, "--elements",
-       "of dry yarns: tetrahedra, hexahedra swept along each yarn (wedges at the tips of its section), or "
-       "beams with the constants of its sections and a list of the yarns that touch",
-       "tet hex beam", &Options::elements, {Elements::tetrahedra, Elements::hexahedra, Elements::beams})
+       "of dry yarns: tetrahedra, hexahedra swept along each yarn (wedges at the tips of its section), "
+       "beams with the constants of its sections and a list of the yarns that touch, or trusses, which do "
+       "not bend",
+       "tet hex beam truss", &Options::elements,
+       {Elements::tetrahedra, Elements::hexahedra, Elements::beams, Elements::trusses})
       .goes_with("is of dry yarns, and a unit cell is meshed with tetrahedra or voxels", "",
                  "--cut --matrix --pores --periodic --voxel")
       .with_preset("tet");

@@ -52,7 +52,10 @@ struct RelaxSettings {
 };
 
 // What yarns are meshed with.
-enum class Elements { tetrahedra, hexahedra, beams };
+enum class Elements { tetrahedra, hexahedra, beams, trusses };
+constexpr bool are_lines(Elements elements) {
+  return elements == Elements::beams || elements == Elements::trusses;
+}
 
 // The explicit step of `mesh --deck explicit`; lengths in the input's unit.
 struct FormingSettings {

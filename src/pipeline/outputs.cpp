@@ -397,7 +397,7 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
         return error(
             Kind::usage,
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
-    if (options.elements == Elements::beams)
+    if (are_lines(options.elements))
       if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
     if (options.forming.wanted)
       if (Status status = check_forming(options, *wanted); !status.ok()) return status.error();

@@ -71,7 +71,7 @@ ABAQUS = {"HEADING": "", "NODE": "NSET", "NSET": "NSET GENERATE", "ELEMENT": "TY
           "BOUNDARY": "TYPE AMPLITUDE", "OUTPUT": "FIELD|HISTORY|NUMBER INTERVAL|TIME INTERVAL", "NODE OUTPUT": "NSET", "ELEMENT OUTPUT": "",
           "ENERGY OUTPUT": "", "END STEP": ""}
 # Elements that Abaqus/Explicit has: C3D10 is none of them.
-ELEMENTS = {"C3D4", "C3D6", "C3D8R", "C3D10M", "B31", "R3D4"}
+ELEMENTS = {"C3D4", "C3D6", "C3D8R", "C3D10M", "B31", "T3D2", "R3D4"}
 # Keywords of LS-DYNA.
 DYNA = set("""KEYWORD TITLE NODE PART PART_CONTACT SECTION_SOLID SECTION_SHELL SECTION_BEAM CONTROL_SOLID ELEMENT_SOLID ELEMENT_SOLID_ORTHO
 ELEMENT_SHELL ELEMENT_BEAM_ORIENTATION MAT_ELASTIC_TITLE MAT_ORTHOTROPIC_ELASTIC_TITLE MAT_RIGID_TITLE SET_PART_LIST_TITLE SET_NODE_LIST_TITLE
@@ -350,6 +350,20 @@ class Explicit(Case):
         np.testing.assert_allclose(list(thickness.values()), 1, atol=1e-12)
         self.assertEqual(float(deck.all("FRICTION")[0][1][0][0]), 0.2)
         self.assertAlmostEqual(self.facts["wave_speed"] / math.sqrt(YOUNG / DENSITY), 1, delta=1e-12)
+
+    def test_trusses(self):
+        """As beams, but for their elements, which have an area alone."""
+        deck = self.deck(self.crossed(), "--elements", "truss", "--load", "compaction", "--thickness", "2.2")
+        self.check_abaqus(deck)
+        self.assertEqual({kind for kind, _ in deck.elements.values()}, {"T3D2", "R3D4"})
+        for words, rows in deck.all("SOLID SECTION"):
+            self.assertAlmostEqual(float(rows[0][0]), math.pi / 4, delta=0.002)
+        self.assertAlmostEqual(self.facts["wave_speed"] / math.sqrt(YOUNG / DENSITY), 1, delta=1e-12)
+        dyna = self.deck(self.crossed(), "--elements", "truss", "--load", "compaction", "--thickness", "2.2", to="k")
+        self.check_dyna(dyna)
+        for rows in dyna.all("SECTION_BEAM"):
+            self.assertEqual(int(rows[0][10:20]), 3)
+            self.assertAlmostEqual(float(rows[1][:10]), math.pi / 4, delta=0.002)
 
     def test_refusals(self):
         source = self.crossed()

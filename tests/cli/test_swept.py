@@ -299,6 +299,26 @@ class Beams(Meshes):
                 found = solved(self.folder, "bend")[pulled][2]
                 self.assertLess(abs(found / (FORCE * LENGTH ** 3 / (3 * YOUNG * moment)) - 1), 0.01)
 
+    def test_trusses(self):
+        """A straight chain whose nodes only move along it is a bar; areas times lengths are the yarns' volumes, in all decks."""
+        output, _ = self.mesh(self.straight("ellipse 2 0.5"), "--elements", "truss")
+        deck = output.read_text()
+        held, pulled = set_of(deck, "y_Start")[0], set_of(deck, "y_End")[0]
+        step = (f"*STEP\n*STATIC\n*BOUNDARY\nAllNodes, 2, 3\n{held}, 1\n*CLOAD\n{pulled}, 1, {FORCE:.9e}\n"
+                "*NODE FILE, OUTPUT=2D\nU\n*END STEP\n")
+        (self.folder / "pull.inp").write_text(deck + step)
+        found = solved(self.folder, "pull")[pulled][0]
+        self.assertLess(abs(found / (FORCE * LENGTH / (YOUNG * math.pi * 0.25)) - 1), 0.005)
+        output, report = self.mesh(RING, "--elements", "truss")
+        mesh = meshio.read(output)
+        lines, = (block.data for block in mesh.cells if block.type == "line")
+        length = np.linalg.norm(np.diff(mesh.points[lines], axis=1), axis=-1).sum()
+        areas = {"inp": r"\*SOLID SECTION.*\n(\S+)", "cdb": r"SECTYPE,\d+,LINK\nSECDATA,(\S+)", "k": r"\*SECTION_BEAM\n *\d+ +3\n *([\d.e+-]+)"}
+        for to, pattern in areas.items():
+            area, = map(float, re.findall(pattern, self.mesh(RING, "--elements", "truss", to=to)[0].read_text()))
+            region, = report["mesh"]["regions"]
+            self.assertAlmostEqual(area * length / region["volume"], 1, delta=1e-4, msg=to)
+
     def test_deck_of_a_cloth_runs(self):
         output, facts = self.beams(PATH, "--solver", "calculix")
         self.assertGreater(len(solved(self.folder, output.stem)), facts["nodes"])
