@@ -18,6 +18,8 @@ FIGURES = [
 ]
 # How a row stands to the smallest one: no loss where all that the row itself takes became less.
 GROWTH = re.compile(r"^to the first$|^to 50 x 50$")
+# Which of them follow the machine's speed.
+TIMES, RATES = re.compile(r"(^|, )(ms|s|us|ns)$|processor's s|^(ms|us|ns|s) a |^processor s a "), re.compile(r"/s$")
 PEERS = re.compile(r"^(bare loop|OpenCASCADE|gmsh.*|a C\+\+ program .*)$")
 # A row is worse that needs more than this share more.
 BOUND = 0.10
@@ -50,8 +52,9 @@ class Table:
                 if k != size and (self.heads[k] in ("threads", "size, mm") or not re.fullmatch(r"[\d.]*", cell))}
 
     def key(self, row):
+        """By which a row is found on another page. Where an edge length is given, how many triangles that made is what the run found."""
         size = self.size_column()
-        return (*self.words(row).values(), *([] if size is None else [row[size]]))
+        return (*self.words(row).values(), *([] if size is None or "size, mm" in self.heads else [row[size]]))
 
     def name(self, row):
         """The same of all sizes."""
@@ -90,20 +93,49 @@ def tables_of(text):
     return tables
 
 
+def rows_of(text, ours):
+    """{(section, key): (figures, the cells before them)} of our rows, or of the peers'."""
+    return {(table.section.split(":")[0], table.key(row)): (table.figures(row), tuple(row[:table.key_columns]))
+            for table in tables_of(text) for row in table.rows if table.is_ours(row) == ours}
+
+
+def name_of(head):
+    return head.split(" (")[0]
+
+
+def slowness(before, now):
+    """How many times as long peers took as before, on the same tasks: the median of their first times, and how many those are."""
+    old, shares = rows_of(before, False), []
+    for place, (figures, task) in rows_of(now, False).items():
+        known, its_task = old.get(place, ({}, None))
+        times = [head for head in figures if TIMES.search(name_of(head)) and known.get(head) and figures[head]]
+        if times and task == its_task:
+            shares.append(figures[times[0]] / known[times[0]])
+    return (statistics.median(shares), len(shares)) if shares else (1.0, 0)
+
+
+def lost_rows(before, now):
+    """(section, key) of our rows before that are on the page no more."""
+    return sorted(rows_of(before, True).keys() - rows_of(now, True).keys())
+
+
 def worse_rows(before, now):
-    """(section, row, figure, before, now) of every row of both texts that became worse by more than BOUND, by its worst figure."""
-    known = {(t.section.split(":")[0], t.key(row)): t.figures(row) for t in tables_of(before) for row in t.rows if t.is_ours(row)}
+    """(section, row, figure, before, now) of every row of both texts that became worse by more than BOUND, by its worst figure; times
+    and speeds count by what they are beyond the peers' slowness()."""
+    known, (slow, _) = rows_of(before, True), slowness(before, now)
     found, compared = [], 0
     for table in tables_of(now):
         for row in table.rows:
-            old = known.get((table.section.split(":")[0], table.key(row)))
+            old, _ = known.get((table.section.split(":")[0], table.key(row)), (None, None))
             if old is None or not table.is_ours(row):
                 continue
             compared += 1
             worst = None
-            shares = {name: value / old[name] if better(name.split(" (")[0]) == LESS else old[name] / value
+            shares = {name: value / old[name] if better(name_of(name)) == LESS else old[name] / value
                       for name, value in table.figures(row).items() if old.get(name) and value}
-            growing = {name for name in shares if GROWTH.match(name.split(" (")[0])}
+            shares = {name: share / slow if TIMES.search(name_of(name)) or RATES.search(name_of(name)) else share
+                      for name, share in shares.items()}
+            growing = {name for name in shares if GROWTH.match(name_of(name))}
             gains = len(shares) > len(growing) and all(shares[name] < 1 for name in shares.keys() - growing)
             for name, share in shares.items():
                 if gains and name in growing:
@@ -145,11 +177,19 @@ def summary(before, commit, now):
     lines = []
     if before:
         found, compared = worse_rows(before, now)
+        slow, peers = slowness(before, now)
+        lines.append(f"Peers on the same tasks took {slow:.2f} times as long as in {commit} (the median of {peers} rows): times and speeds count by "
+                     "what they are beyond that." if peers else "No peer has the same task as before: times are compared as they are.")
+        lines.append("")
         lines.append(f"{len(found)} of {compared} rows are worse than in {commit} by more than {BOUND:.0%}"
                      + (":" if found else "."))
         lines.append("")
         lines += [f"- **{section.split(':')[0]}**, {', '.join(key)}: {figure} {old:g} -> {value:g}"
                   for section, key, figure, old, value in found]
+        lost = lost_rows(before, now)
+        if lost:
+            lines += ["", f"Rows of {commit} that are here no more:", ""]
+            lines += [f"- **{section}**, {', '.join(key)}" for section, key in lost]
     else:
         lines.append("There are no results to compare with.")
     lines += ["", "Exponents of growth (1: the time of one of many stays the same), plotted in RESULTS.svg:", ""]

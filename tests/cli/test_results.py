@@ -237,6 +237,49 @@ class Results(Case):
                 wanted = np.mean(means[where[tuple(np.round(point, 4))]], axis=0)
                 self.assertLess(np.abs(value - wanted).max(), 2e-4 * largest + 1e-4)
 
+    def test_stresses_that_elements_hold(self):
+        """Bending of straight tetrahedra with ten nodes, and tension of hexahedra and wedges: stresses that these elements have exactly.
+        Every node but one inside is where the closed form puts it."""
+        young, poisson = 1000.0, 0.3
+        thread = {"box": "polygon\n    -0.5 -0.4\n    0.5 -0.4\n    0.5 0.4\n    -0.5 0.4\n  end", "lens": "lenticular 1 0.4"}
+        strain, bend = 0.01, 0.02
+
+        def bent(x, y, z):
+            """Drawn, and bent about z."""
+            return (strain * x + bend * x * y, -poisson * strain * y - bend * (x * x + poisson * (y * y - z * z)) / 2,
+                    -poisson * (strain * z + bend * y * z))
+
+        def drawn(x, y, z):
+            return strain * x, -poisson * strain * y, -poisson * strain * z
+
+        for section, options, field, curved in (("box", ("--order", "2", "--size", "0.4"), bent, bend), ("lens", ("--elements", "hex", "--size", "0.15"), drawn, 0.0)):
+            with self.subTest(section):
+                source = self.folder / f"{section}.txt"
+                source.write_text(f"fabric 1\ntolerance 1e-4\nmaterial m\n  elastic isotropic {young} {poisson}\nend\nthread t\n  section {thread[section]}\n"
+                                  "  material m\nend\nyarn y t\n  path chord\n    0 0 0\n    1 0 0\n    2 0 0\n  end\nend\n")
+                deck = self.folder / f"{section}.inp"
+                self.succeeds("mesh", source, *options, "-o", deck)
+                model = deck.read_text()
+                model = model[:model.index("*STEP")]
+                nodes, inside, kinds = {}, False, set()
+                for line in model.splitlines():
+                    if line.startswith("*"):
+                        inside = line.startswith("*NODE")
+                        kinds |= set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", line))
+                    elif inside:
+                        number, *place = line.split(",")
+                        nodes[int(number)] = tuple(map(float, place))
+                self.assertLessEqual(kinds, {"C3D10", "C3D6", "C3D8R", "C3D8I", "C3D8"})
+                free = min(nodes, key=lambda n: sum((a - b) ** 2 for a, b in zip(nodes[n], (1, 0, 0))))
+                held = "".join(f"{n}, {k + 1}, {k + 1}, {value!r}\n" for n, place in nodes.items() if n != free for k, value in enumerate(field(*place)))
+                deck.write_text(f"{model}*STEP\n*STATIC\n*BOUNDARY\n{held}*NODE FILE\nU\n*EL FILE\nS, E\n*END STEP\n")
+                ccx(self.folder, section)
+                points, stress = self.field(self.folder / f"{section}.frd", "STRESS", "y")
+                wanted = np.zeros((len(points), 6))
+                wanted[:, 0] = young * (strain + curved * points[:, 1])
+                self.assertGreater(len(points), 50)
+                self.assertLess(np.abs(stress - wanted).max(), 2e-3 * young * strain)
+
     def test_steps_shapes_and_the_matrix(self):
         self.succeeds("mesh", SAMPLES / "cell_straight.txt", "--matrix", "--periodic", "--voxel", 6, "-o", self.folder / "cell.inp")
         ccx(self.folder, "cell")
