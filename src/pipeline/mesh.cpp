@@ -98,6 +98,8 @@ void take(Job& job, MadeMesh made, Meshes& all) {
     tell(job, fmt::format("{}: {}\n", job.input.path, hexahedra_in_words(*made.mesh)));
   else if (made.mesh->shape == fem::Mesh::Shape::tetrahedron)
     tell(job, fmt::format("{}: {}\n", job.input.path, tetrahedra_in_words(*made.mesh)));
+  if (!made.mesh->interfaces.empty())
+    tell(job, fmt::format("{}: {}\n", job.input.path, interfaces_in_words(*made.mesh)));
   if (!made.mesh->layers.wedges.empty())
     tell(job, fmt::format("{}: {}\n", job.input.path, layers_in_words(*made.mesh, job.file_units())));
   tell_volumes(job, *made.mesh);

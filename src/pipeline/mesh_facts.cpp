@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/words.h"
 #include "fem/quality.h"
 
 namespace selvage::pipeline {
@@ -232,6 +233,16 @@ std::string tetrahedra_in_words(const fem::Mesh& mesh) {
                      mesh.elements.size(), mesh.quality.min_dihedral, fem::first_percentile_angle(mesh));
 }
 
+std::string interfaces_in_words(const fem::Mesh& mesh) {
+  std::size_t sides = 0;
+  for (const fem::Interface& interface : mesh.interfaces) sides += interface.sides.size();
+  const std::string where = counted(mesh.interfaces.size(), "interface");
+  return mesh.joining == fem::Joining::cohesive
+             ? fmt::format("{} in {}", counted(sides, "cohesive element"), where)
+             : fmt::format("{} of surfaces that face each other, {} on either side", where,
+                           counted(sides, "triangle"));
+}
+
 std::string layers_in_words(const fem::Mesh& mesh, Unit units) {
   const fem::WallLayers& layers = mesh.layers;
   const std::string_view unit = name_of(units);
@@ -297,9 +308,6 @@ Json beams_json(const fem::BeamModel& beams) {
 }
 
 std::string beams_in_words(const fem::BeamModel& beams) {
-  const auto counted = [](std::size_t count, std::string_view what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-  };
   const std::string_view what = beams.are_trusses ? "truss element" : "beam";
   std::string text = fmt::format("{} with {}", counted(beams.mesh.elements.size(), what),
                                  counted(beams.sections.size(), "section"));

@@ -27,6 +27,8 @@ std::string forming_in_words(const fem::Forming& forming);
 
 // Of tetrahedra: how many, and how sharp their angles are.
 std::string tetrahedra_in_words(const fem::Mesh& mesh);
+// Of a mesh that has interfaces.
+std::string interfaces_in_words(const fem::Mesh& mesh);
 // Of a pore space that has layers (Mesh::layers).
 std::string layers_in_words(const fem::Mesh& mesh, Unit units);
 

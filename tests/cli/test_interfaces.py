@@ -297,6 +297,13 @@ class Cells(Interfaces):
                 print(f"{name}: {len(deck.solids)} tetrahedra, {len(deck.wedges)} wedges, "
                       f"{len(deck.nodes) - len(bonded.nodes)} nodes doubled")
 
+    def test_the_console_counts_them(self):
+        for interface, words in (("cohesive", "{} cohesive elements in 1 interface"), ("surfaces", "1 interface of surfaces that face each other, {} triangles on either side")):
+            out = self.folder / f"{interface}.inp"
+            done = self.succeeds("mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--interface", interface, "-o", out)
+            count = len(interfaces.Deck(out).wedges) if interface == "cohesive" else count
+            self.assertIn(words.format(count), done.stdout + done.stderr)
+
     def test_bonded_yarns(self):
         """With --bond yarns hold on to each other, too; where three regions meet there are three nodes."""
         deck = self.deck(SAMPLES / "cell_plain.txt", "--interface", "cohesive", "--bond", "--size", "0.15")

@@ -59,6 +59,7 @@ class Curve:
     def __init__(self, formula, t0, t1, corners=()):
         self.formula, self.t0, self.t1, self.place = formula, t0, t1, Place()
         self.corners = list(corners)  # parameters where it is not smooth
+        self.grid = None
 
     def at(self, t):
         return self.place(self.formula(t))
@@ -87,16 +88,17 @@ class Curve:
         return nearest_on_curve(self, p)[0]
 
 
+def grid_of(curve):
+    """[(a, b, [(parameter, point)])] of its smooth parts."""
+    stops = [curve.t0, *curve.corners, curve.t1]
+    steps = max(4, 96 // (len(stops) - 1))
+    return [(a, b, [(t, curve.at(t)) for t in (a + (b - a) * i / steps for i in range(steps + 1))]) for a, b in zip(stops, stops[1:]) if b > a]
+
+
 def nearest_on_curve(curve, p):
     """(distance, parameter)."""
-    stops = [curve.t0, *curve.corners, curve.t1]
-    found = []
-    for a, b in zip(stops, stops[1:]):
-        if b <= a:
-            continue
-        steps = max(4, 96 // (len(stops) - 1))
-        best = min((norm(minus(curve.at(a + (b - a) * i / steps), p)), a + (b - a) * i / steps) for i in range(steps + 1))
-        found.append((best, a, b))
+    curve.grid = curve.grid or grid_of(curve)
+    found = [(min((norm(minus(point, p)), t) for t, point in points), a, b) for a, b, points in curve.grid]
     found.sort()
     result = found[0][0]
     for (_, t), a, b in found[:4]:
