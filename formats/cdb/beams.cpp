@@ -112,11 +112,12 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_materials(text, beams.mesh);
   write_contacts(text, beams, names);
   text << "FINISH\n";
-  Result<WriteFacts> facts = finished(text,
-                                      {{"nodes", beams.mesh.nodes.size()},
-                                       {beams.are_trusses ? "LINK180" : "BEAM188", beams.mesh.elements.size()},
-                                       {"beam sections", beams.sections.size()}},
-                                      {{"contact pairs", beams.contacts.size()}});
+  Result<WriteFacts> facts =
+      finished(text,
+               {{"nodes", beams.mesh.nodes.size()},
+                {beams.are_trusses ? "LINK180" : "BEAM188", beams.mesh.elements.size()},
+                {"beam sections", beams.sections.size()}},
+               {{"contact pairs", beams.contacts.size()}});
   if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an ANSYS archive of beams");
   return facts;
 }

@@ -86,8 +86,9 @@ class Reader {
     if (mesh_.elements.empty()) return refuse(0, "the file has no element that is a surface or a solid");
     if (left_out_ > 0)
       report_.warning(
-          lines_.spot(0), fmt::format("{} neither surfaces nor solids: left out",
-                               left_out_ == 1 ? "1 element is" : fmt::format("{} elements are", left_out_)));
+          lines_.spot(0),
+          fmt::format("{} neither surfaces nor solids: left out",
+                      left_out_ == 1 ? "1 element is" : fmt::format("{} elements are", left_out_)));
     mesh_.regions.resize(region_of_.size());
     for (const auto& [material, region] : region_of_) {
       const auto name = materials_.find(material);

@@ -1,4 +1,5 @@
-// Yarns as beams with their sections, in a deck that Abaqus takes (B31), or CalculiX (B32R), or as trusses (T3D2).
+// Yarns as beams with their sections, in a deck that Abaqus takes (B31), or CalculiX (B32R), or as trusses
+// (T3D2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -255,11 +256,12 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
     write_contacts(text, beams, names);
     write_beam_step(text, beams);
   }
-  Result<WriteFacts> facts = finished(text,
-                                      {{"nodes", beams.mesh.nodes.size()},
-                                       {std::string(beam_type(beams, for_calculix)), beams.mesh.elements.size()},
-                                       {beams.are_trusses ? "areas" : "beam sections", groups.size()}},
-                                      {{"contact pairs", beams.contacts.size()}});
+  Result<WriteFacts> facts =
+      finished(text,
+               {{"nodes", beams.mesh.nodes.size()},
+                {std::string(beam_type(beams, for_calculix)), beams.mesh.elements.size()},
+                {beams.are_trusses ? "areas" : "beam sections", groups.size()}},
+               {{"contact pairs", beams.contacts.size()}});
   if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an Abaqus deck of beams");
   return facts;
 }

@@ -1,4 +1,5 @@
-// Yarns as beams of LS-DYNA: resultants (Belytschko and Schwer), or trusses; a part for each section of a yarn.
+// Yarns as beams of LS-DYNA: resultants (Belytschko and Schwer), or trusses; a part for each section of a
+// yarn.
 #include "fem/beams.h"
 
 #include <algorithm>

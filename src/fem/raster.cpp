@@ -306,10 +306,10 @@ std::vector<VoxelShare> shares_of(const yarn::Body& body, const yarn::Body& own,
   shares.finish(
       body.closed_along, body.surface.last_v() - body.surface.first_v(),
       [&](const std::array<std::ptrdiff_t, 3>& at, double share, double v) {
-        const Vec3 middle = axes.place(low + Vec3(static_cast<double>(at[0]) + 0.5,
-                                                  static_cast<double>(at[1]) + 0.5,
-                                                  static_cast<double>(at[2]) + 0.5)
-                                                 .cwiseProduct(sides));
+        const Vec3 middle =
+            axes.place(low + Vec3(static_cast<double>(at[0]) + 0.5, static_cast<double>(at[1]) + 0.5,
+                                  static_cast<double>(at[2]) + 0.5)
+                                 .cwiseProduct(sides));
         const AxisTable::Place place = table.nearest(middle, v);
         const Eigen::Vector3f along = place.along.cast<float>();
         const auto [i, j, k] = at;

@@ -1,6 +1,6 @@
-// A unit cell, a box or a parallelepiped, as fields on a grid of voxels, for methods without elements (FFT): who fills each voxel, by how
-// much, and which way the fibres run there. Other than the hexahedra of voxel.h, whose yarns are stairs, it
-// says what share of a voxel on a yarn's surface lies inside.
+// A unit cell, a box or a parallelepiped, as fields on a grid of voxels, for methods without elements (FFT):
+// who fills each voxel, by how much, and which way the fibres run there. Other than the hexahedra of voxel.h,
+// whose yarns are stairs, it says what share of a voxel on a yarn's surface lies inside.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ struct RasterPhase {
 };
 
 struct Raster {
-  std::array<std::size_t, 3> count{};    // of voxels along the cell's three edges: x, y, z of a box
-  Vec3 origin = Vec3::Zero();            // the cell's corner, mm
+  std::array<std::size_t, 3> count{};  // of voxels along the cell's three edges: x, y, z of a box
+  Vec3 origin = Vec3::Zero();          // the cell's corner, mm
   std::array<Vec3, 3> edges = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // from there, mm
   std::string title;
   std::vector<RasterPhase> phases;  // 0: what no yarn fills; then the yarns that enter the cell

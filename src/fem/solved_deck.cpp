@@ -19,17 +19,21 @@ using Mat3 = Eigen::Matrix3d;
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
-// Derivatives of an element's shape functions in its own coordinates at its middle, a column a node.
+// Derivatives of an element's shape functions in its own coordinates, a column a node: of a tetrahedron with
+// ten nodes at one of its corners, of others at the middle, where their strains are best.
 using Slopes = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-Slopes slopes_of(std::size_t nodes) {
+Slopes slopes_of(std::size_t nodes, int corner) {
   Slopes corners(3, 4);
   corners << -1, 1, 0, 0, -1, 0, 1, 0, -1, 0, 0, 1;
   if (nodes == 4) return corners;
   Slopes slopes = Slopes::Zero(3, static_cast<Eigen::Index>(nodes));
   if (nodes == 10) {
-    // Of corners 4 L - 1 is 0 there, of midside nodes 4 L L' is grad L + grad L'.
+    // Of the functions L (2 L - 1) of corners and 4 L L' of midside nodes.
     constexpr std::array<std::array<int, 2>, 6> edges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-    for (int k = 0; k < 6; ++k) slopes.col(4 + k) = corners.col(edges[k][0]) + corners.col(edges[k][1]);
+    for (int k = 0; k < 4; ++k) slopes.col(k) = (k == corner ? 3 : -1) * corners.col(k);
+    for (int k = 0; k < 6; ++k)
+      for (const int end : {0, 1})
+        if (edges[k][end] == corner) slopes.col(4 + k) = 4 * corners.col(edges[k][1 - end]);
   } else if (nodes == 6) {
     for (int k = 0; k < 3; ++k) {
       const Vec3 in_triangle(k == 0 ? -0.5 : k == 1 ? 0.5 : 0.0, k == 0 ? -0.5 : k == 2 ? 0.5 : 0.0, 0);
@@ -43,9 +47,8 @@ Slopes slopes_of(std::size_t nodes) {
   return slopes;
 }
 
-// The strain (tensor) of a displaced element at its middle.
-Mat3 strain_of(const std::vector<Vec3>& places, const std::vector<Vec3>& moved) {
-  const Slopes slopes = slopes_of(places.size());
+// The strain (tensor) of a displaced element where its shape functions have these slopes.
+Mat3 strain_of(const std::vector<Vec3>& places, const std::vector<Vec3>& moved, const Slopes& slopes) {
   Mat3 by_place = Mat3::Zero(), by_motion = Mat3::Zero();
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Vec3 slope = slopes.col(static_cast<Eigen::Index>(k));
@@ -96,13 +99,10 @@ class NodeMeans {
         sums_(mesh.nodes.size() * static_cast<std::size_t>(components)),
         counts_(mesh.nodes.size()) {}
   template <class Values>
-  void add(const FieldMesh::Element& element, const Values& values) {
-    for (std::size_t c = 0; c < corner_count(element.shape); ++c) {
-      const std::uint32_t node = element.corners[c];
-      ++counts_[node];
-      for (int k = 0; k < components_; ++k)
-        sums_[node * static_cast<std::size_t>(components_) + static_cast<std::size_t>(k)] += values[k];
-    }
+  void add(std::uint32_t node, const Values& values) {
+    ++counts_[node];
+    for (int k = 0; k < components_; ++k)
+      sums_[node * static_cast<std::size_t>(components_) + static_cast<std::size_t>(k)] += values[k];
   }
   [[nodiscard]] Field field(std::string name, int step) const {
     Field made{std::move(name), true, components_, {}, step};
@@ -174,10 +174,18 @@ Status reckon(const SolvedDeck& deck, const std::vector<const SolvedDeck::Elemen
       places.push_back(mesh.nodes[node->second]);
       ways.push_back(vector_at(moved, node->second));
     }
-    const Mat3 strain = strain_of(places, ways);
-    strains.add(mesh.elements[e], six_of(strain));
-    stresses.add(mesh.elements[e],
-                 six_of(stress_of(strain, deck.sections[elements[e]->section], *elements[e], warming)));
+    const FieldMesh::Element& element = mesh.elements[e];
+    for (std::size_t c = 0; c < corner_count(element.shape); ++c) {
+      const std::uint32_t node = element.corners[c];
+      const auto own =
+          std::find(elements[e]->nodes.begin(), elements[e]->nodes.end(), mesh.node_numbers[node]);
+      const Mat3 strain = strain_of(
+          places, ways,
+          slopes_of(places.size(), static_cast<int>(std::distance(elements[e]->nodes.begin(), own))));
+      strains.add(node, six_of(strain));
+      stresses.add(node,
+                   six_of(stress_of(strain, deck.sections[elements[e]->section], *elements[e], warming)));
+    }
   }
   const int step = moved.step;
   std::erase_if(mesh.fields, [&](const Field& field) {

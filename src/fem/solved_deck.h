@@ -40,11 +40,11 @@ struct SolvedDeck {
 
 // Makes results those of the deck: regions are its, with nodes of their own where they meet; steps are called
 // as the deck calls them; fields `STRESS` and `TOSTRAIN` are reckoned anew from the displacements of each
-// step, as strains at the elements' middles times the section's stiffness, and averaged at nodes over the
-// elements of the region alone. (CalculiX's own are averages over both materials where two meet, which halves
-// what a yarn's surface carries.) Adds the field `along` of nodes, unit vectors, not a number where there are
-// no fibres. Errors: malformed: the results are those of another deck (an element that it has not, or with
-// other nodes).
+// step, as strains times the section's stiffness, at the corners of tetrahedra with ten nodes and at the
+// middles of other elements, and averaged at nodes over the elements of the region alone. (CalculiX's own are
+// averages over both materials where two meet, which halves what a yarn's surface carries.) Adds the field
+// `along` of nodes, unit vectors, not a number where there are no fibres. Errors: malformed: the results are
+// those of another deck (an element that it has not, or with other nodes).
 Status apply(const SolvedDeck& deck, FieldMesh& mesh);
 
 // Gives regions that share nodes nodes of their own, with the same values.

@@ -318,9 +318,8 @@ std::string beams_in_words(const fem::BeamModel& beams) {
     most = std::max(most, count);
   }
   if (varying > 0)
-    text +=
-        fmt::format("; the section varies along {} and is that of each {}'s middle: {} stations at most",
-                    counted(varying, "yarn"), what, most);
+    text += fmt::format("; the section varies along {} and is that of each {}'s middle: {} stations at most",
+                        counted(varying, "yarn"), what, most);
   return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
 }
 

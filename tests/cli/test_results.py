@@ -271,7 +271,7 @@ class Results(Case):
                         nodes[int(number)] = tuple(map(float, place))
                 self.assertLessEqual(kinds, {"C3D10", "C3D6", "C3D8R", "C3D8I", "C3D8"})
                 free = min(nodes, key=lambda n: sum((a - b) ** 2 for a, b in zip(nodes[n], (1, 0, 0))))
-                held = "".join(f"{n}, {k + 1}, {k + 1}, {value!r}\n" for n, place in nodes.items() if n != free for k, value in enumerate(field(*place)))
+                held = "".join(f"{n}, {k + 1}, {k + 1}, {value:.11e}\n" for n, place in nodes.items() if n != free for k, value in enumerate(field(*place)))
                 deck.write_text(f"{model}*STEP\n*STATIC\n*BOUNDARY\n{held}*NODE FILE\nU\n*EL FILE\nS, E\n*END STEP\n")
                 ccx(self.folder, section)
                 points, stress = self.field(self.folder / f"{section}.frd", "STRESS", "y")

@@ -301,7 +301,7 @@ class Beams(Meshes):
 
     def test_trusses(self):
         """A straight chain whose nodes only move along it is a bar; areas times lengths are the yarns' volumes, in all decks."""
-        output, _ = self.mesh(self.straight("ellipse 2 0.5"), "--elements", "truss")
+        output, _ = self.mesh(self.straight("ellipse 2 0.5"), "--elements", "truss", to="inp")
         deck = output.read_text()
         held, pulled = set_of(deck, "y_Start")[0], set_of(deck, "y_End")[0]
         step = (f"*STEP\n*STATIC\n*BOUNDARY\nAllNodes, 2, 3\n{held}, 1\n*CLOAD\n{pulled}, 1, {FORCE:.9e}\n"
@@ -309,7 +309,7 @@ class Beams(Meshes):
         (self.folder / "pull.inp").write_text(deck + step)
         found = solved(self.folder, "pull")[pulled][0]
         self.assertLess(abs(found / (FORCE * LENGTH / (YOUNG * math.pi * 0.25)) - 1), 0.005)
-        output, report = self.mesh(RING, "--elements", "truss")
+        output, report = self.mesh(RING, "--elements", "truss", to="inp")
         mesh = meshio.read(output)
         lines, = (block.data for block in mesh.cells if block.type == "line")
         length = np.linalg.norm(np.diff(mesh.points[lines], axis=1), axis=-1).sum()

@@ -77,11 +77,12 @@ class Voxels(Case):
             self.assertFalse(volumes)
 
     def test_an_oblique_cell(self):
-        """A straight elliptic tow along the sum of both vectors of a rhombic cell: its share by hand, its direction in space, and the
-        voxels that have their middles in the ellipse."""
+        """Straight elliptic tows along the sum of both vectors of a rhombic cell, where its lattice repeats one: their share by hand,
+        their direction in space, and the voxels that have their middles in the ellipses."""
+        places_across = (-0.9, 0.1, 1.1)
         text = self.folder / "rhomb.txt"
         text.write_text("fabric 1\ntolerance 1e-4\nthread tow\n  section ellipse 0.6 0.4\nend\n"
-                        "yarn one tow\n  path chord\n    -3 0.1 0.3\n    6 0.1 0.3\n  end\nend\n"
+                        + "".join(f"yarn y{n} tow\n  path chord\n    -3 {y} 0.3\n    6 {y} 0.3\n  end\nend\n" for n, y in enumerate(places_across)) +
                         "cell vectors 2 -1 0  2 1 0  0 0 0.6 at -0.5 0 0\n  periodic x y\nend\n")
         h5, npz, report = self.made(text, 48)
         with np.load(npz) as arrays, h5py.File(h5) as file:
@@ -89,13 +90,14 @@ class Voxels(Case):
             np.testing.assert_allclose(arrays["vectors"], [[2, -1, 0], [2, 1, 0], [0, 0, 0.6]], atol=1e-12)
             np.testing.assert_allclose(arrays["origin"], [-0.5, 0, 0], atol=1e-12)
             shares, phase = arrays["yarn_fraction"], arrays["phase"]
-            self.assertAlmostEqual(shares.mean(dtype=float) * 4 * 0.6, 4 * np.pi * 0.3 * 0.2, delta=4e-4)  # one yarn along the diagonal
+            self.assertAlmostEqual(shares.mean(dtype=float) * 4 * 0.6, 4 * np.pi * 0.3 * 0.2, delta=4e-4)
             k, j, i = np.indices(shares.shape)
             places = arrays["origin"] + sum((index + 0.5)[..., None] / size * vector for index, size, vector in
                                             zip((i, j, k), reversed(shares.shape), arrays["vectors"]))
-            radius = np.hypot((places[..., 1] - 0.1) / 0.3, (places[..., 2] - 0.3) / 0.2)
-            self.assertTrue((phase[radius < 0.85] == 1).all())
-            self.assertTrue((phase[radius > 1.15] == 0).all())
+            for n, y in enumerate(places_across, 1):
+                radius = np.hypot((places[..., 1] - y) / 0.3, (places[..., 2] - 0.3) / 0.2)
+                self.assertTrue((phase[radius < 0.85] == n).all())
+                self.assertFalse((phase[radius > 1.15] == n).any())
             along = arrays["orientation"][shares > 0]
             np.testing.assert_allclose(np.abs(along), np.broadcast_to([1, 0, 0], along.shape), atol=1e-6)
         np.testing.assert_allclose(report["voxels"]["lengths"], [5**0.5, 5**0.5, 0.6])

@@ -49,9 +49,10 @@ std::size_t voxel(const Raster& raster, std::size_t i, std::size_t j, std::size_
 
 Vec3 middle_of(const Raster& raster, std::size_t i, std::size_t j, std::size_t k) {
   const Vec3 sides = raster.lengths();
-  return raster.origin + Vec3((static_cast<double>(i) + 0.5) / static_cast<double>(raster.count[0]) * sides.x(),
-                           (static_cast<double>(j) + 0.5) / static_cast<double>(raster.count[1]) * sides.y(),
-                           (static_cast<double>(k) + 0.5) / static_cast<double>(raster.count[2]) * sides.z());
+  return raster.origin +
+         Vec3((static_cast<double>(i) + 0.5) / static_cast<double>(raster.count[0]) * sides.x(),
+              (static_cast<double>(j) + 0.5) / static_cast<double>(raster.count[1]) * sides.y(),
+              (static_cast<double>(k) + 0.5) / static_cast<double>(raster.count[2]) * sides.z());
 }
 
 template <class Look>
