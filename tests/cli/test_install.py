@@ -129,7 +129,7 @@ class Installed(Case):
         share = 0.2
         radius = math.sqrt(share / math.pi)
         (self.folder / "array.txt").write_text(
-            f"fabric 1\nunits mm\ntolerance 1e-4\nthread fibre\n  section circle {radius!r}\nend\n"
+            f"fabric 1\nunits mm\ntolerance 1e-4\nthread fibre\n  section circle {2 * radius!r}\nend\n"
             "yarn one fibre\n  path chord\n    -1 0 0\n    2 0 0\n  end\nend\n"
             "cell 0 -0.5 -0.5  0.2 0.5 0.5\n  periodic x y z\nend\n")
         done = subprocess.run([self.prefix / "bin/selvage-permeability", "array.txt", "--segments", "12", "--json", "-"],
