@@ -354,8 +354,8 @@ def main():
             contact(given.bin, folder, given.quick) +
             "\n## Tetrahedra of a unit cell: the plain weave of samples/cell_plain.txt with its matrix\n\n"
             "The surfaces are the same for all: those that selvage made. Its time is that of TetGen in its worker, of the checks "
-            "of what came back, of the points put in and of the improvement to 12 degrees, which is just above what gmsh reaches, "
-            "or 15; gmsh's is what it says of its own meshing and optimizing of the volumes, as it does both by itself. Processor "
+            "of what came back, of the points put in and of the improvement to 12 degrees "
+            "or 15, as far as it gets; gmsh's is what it says of its own meshing and optimizing of the volumes, as it does both by itself. Processor "
             "time is that of all threads and of the worker.\n\n" + tetrahedra(given.bin, folder, given.quick))
     # The committed page, against which a row may not have become worse unseen.
     page = pathlib.Path(given.out)
