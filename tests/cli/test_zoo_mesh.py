@@ -23,11 +23,11 @@ def has_yarns(sample):
 
 class ZooMesh(Case):
     def size_for(self, sample):
-        """Seven tenths of the side of a square as large as the smallest section."""
+        """Seven fifths of the side of a square as large as the smallest section."""
         report = self.folder / "info.json"
         self.succeeds("info", sample, "--report", report, "--quiet")
         yarns = json.loads(report.read_text())["inputs"][0]["yarns"]
-        return 0.7 * min((yarn["volume"] / yarn["length"]) ** 0.5 for yarn in yarns)
+        return 1.4 * min((yarn["volume"] / yarn["length"]) ** 0.5 for yarn in yarns)
 
     def mesh(self, sample, size):
         """The volume and the smallest tetrahedron of every yarn, and what the program says of the yarns."""
@@ -43,7 +43,7 @@ class ZooMesh(Case):
 
     def judge(self, sample):
         size = self.size_for(sample)
-        for _ in range(3):  # flat sections need finer ones
+        for _ in range(4):  # flat sections need finer ones
             found = self.mesh(sample, size)
             self.assertGreater(min(smallest for _, smallest in found), 0.0)
             error = max(abs(share - 1) for share, _ in found)
