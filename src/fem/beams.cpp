@@ -119,6 +119,7 @@ Result<std::vector<BeamContact>> find_pairs(std::span<const yarn::Body> bodies, 
     ++at->second.places;
   }
   std::vector<BeamContact> list;
+  list.reserve(pairs.size());
   for (const auto& [yarns, pair] : pairs) list.push_back(pair);
   return list;
 }

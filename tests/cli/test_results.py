@@ -11,7 +11,7 @@ import zlib
 
 import numpy as np
 import page
-from program import SAMPLES, Case
+from program import HAS_PAGES, NO_PAGES, SAMPLES, Case
 
 # viridis at ninths, as published, of which the scale is made.
 SCALE = np.array([(68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137), (53, 183, 121),
@@ -130,6 +130,8 @@ class Results(Case):
 
     def field(self, source, name, region):
         """A field at the points of one region's outside, as the page has it."""
+        if not HAS_PAGES:
+            self.skipTest(NO_PAGES)
         made = self.folder / "page.html"
         self.succeeds("view", source, "-o", made)
         read = page.Page(made)
