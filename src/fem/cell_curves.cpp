@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "fem/crest_tips.h"
 #include "fem/divided_line.h"
 
 namespace selvage::fem {
@@ -18,12 +19,20 @@ namespace {
 struct OnArc {
   double along = 0;
   std::optional<double> crest;  // the crest's u, as it goes on past the seam
+  double first = 0;             // the edge beside it (CrestCrossing), 0: as the field has it
+};
+
+// A node of a chain is on a crest, and what it has of CrestCrossing.
+struct Crossed {
+  bool crest = false;
+  double needle = 0;
 };
 
 class Divider {
  public:
-  Divider(const CellShape& shape, const SizeField& field, double miss, CellNodes& nodes)
-      : shape_(shape), field_(field), miss_(miss), nodes_(nodes) {}
+  Divider(const CellShape& shape, const CrestTips& tips, const SizeField& field, double miss,
+          CellNodes& nodes)
+      : shape_(shape), tips_(tips), field_(field), miss_(miss), nodes_(nodes) {}
 
   Result<CellCurves> run();
 
@@ -33,6 +42,7 @@ class Divider {
     std::size_t body;
     Vec2 turn;  // what the parameters gain along an arc that is a border by itself
     cell::ArcCurve curve;
+    const std::vector<CrestCrossing>& crossings;
     Chain& chain;
     std::size_t low = none;  // the arc that it is a copy of
 
@@ -78,13 +88,13 @@ class Divider {
   void make_segments();
   void divide(ArcEntry& entry);
   Status copy(ArcEntry& entry);
-  std::uint32_t add(ArcEntry& entry, const Vec3& point, const Vec2& q, bool on_crest, bool is_last);
+  std::uint32_t add(ArcEntry& entry, const Vec3& point, const Vec2& q, const Crossed& crossed, bool is_last);
   static void close(ArcEntry& entry);
   [[nodiscard]] std::vector<OnArc> places(const ArcEntry& entry) const;
-  [[nodiscard]] std::vector<OnArc> crest_places(const ArcEntry& entry) const;
   [[nodiscard]] Message does_not_go_on(const ArcEntry& entry, double by, const Vec3& at) const;
 
   const CellShape& shape_;
+  const CrestTips& tips_;
   const SizeField& field_;
   double miss_;
   CellNodes& nodes_;
@@ -105,7 +115,7 @@ void Divider::collect_arcs() {
         const yarn::Body& body = shape_.bodies[piece.body];
         arcs_.push_back({edges[k], piece.body,
                          Vec2(border.turns_u, border.turns_v).cwiseProduct(cell::periods(body)),
-                         cell::ArcCurve(body, shape_.cell, arc), curves_.chains[k]});
+                         cell::ArcCurve(body, shape_.cell, arc), tips_.of_arcs[k], curves_.chains[k]});
       }
   for (std::size_t s = arcs_.size(); s < edges.size(); ++s)
     parts_[static_cast<std::size_t>(edges[s].box_edge) + 1] = s + 1;
@@ -222,54 +232,27 @@ void Divider::make_segments() {
     }
 }
 
-// Where the arc crosses the crests of its yarn.
-std::vector<OnArc> Divider::crest_places(const ArcEntry& entry) const {
-  const nurbs::Surface& surface = shape_.bodies[entry.body].surface;
-  const double first = surface.first_u(), period = surface.last_u() - first;
-  const std::vector<Vec2>& q = entry.edge.arc->parameters;
-  const std::vector<double>& lengths = entry.curve.lengths();
-  std::vector<OnArc> result;
-  for (std::size_t k = 0; k + 1 < q.size(); ++k)
-    for (const double crest : crests_[entry.body]) {
-      const double low = std::min(q[k].x(), q[k + 1].x()), high = std::max(q[k].x(), q[k + 1].x());
-      const auto first_turn = static_cast<long>(std::ceil((low - crest) / period)),
-                 last_turn = static_cast<long>(std::floor((high - crest) / period));
-      for (long turn = first_turn; turn <= last_turn; ++turn) {
-        const double u = crest + period * static_cast<double>(turn);
-        // Each kept point belongs to the step behind it, the last to the one before it.
-        if (u == q[k + 1].x() && k + 2 < q.size()) continue;
-        double from = lengths[k], to = lengths[k + 1];
-        const bool rising = q[k + 1].x() > q[k].x();
-        if (u == q[k].x()) to = from;
-        if (u == q[k + 1].x()) from = to;
-        for (int step = 0; step < 60 && to - from > 1e-15 * lengths.back(); ++step) {
-          const double middle = (from + to) / 2;
-          ((entry.curve.at(middle).x() < u) == rising ? from : to) = middle;
-        }
-        result.push_back({(from + to) / 2, u});
-      }
-    }
-  std::sort(result.begin(), result.end(), [](const OnArc& a, const OnArc& b) { return a.along < b.along; });
-  return result;
-}
-
 // An arc that is a border by itself begins at its first crest, and goes on past its end.
 std::vector<OnArc> Divider::places(const ArcEntry& entry) const {
-  const std::vector<OnArc> breaks = crest_places(entry);
+  std::vector<OnArc> breaks;
+  for (const CrestCrossing& crossing : entry.crossings)
+    breaks.push_back({crossing.along, crossing.crest, crossing.first});
   const double length = entry.curve.length();
   // Not nearer to an end, or to each other, than nothing.
   const double least = 1e-7 * length;
   std::vector<OnArc> kept;
   if (!entry.edge.is_border() || breaks.empty()) kept.push_back({0, {}});
   for (const OnArc& place : breaks) {
-    if (kept.empty() || place.along - kept.back().along > least)
+    if (kept.empty() || place.along - kept.back().along > least) {
       kept.push_back(place);
-    else if (!kept.back().crest)
+    } else if (!kept.back().crest) {
       kept.back().crest = place.crest;
+      kept.back().first = place.first;
+    }
   }
   const double end = entry.edge.is_border() ? kept.front().along + length : length;
   if (end - kept.back().along > least)
-    kept.push_back({end, {}});
+    kept.push_back({end, {}, entry.edge.is_border() ? kept.front().first : 0});
   else
     kept.back().along = end;
   std::vector<OnArc> result;
@@ -277,10 +260,11 @@ std::vector<OnArc> Divider::places(const ArcEntry& entry) const {
   for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
     const double from = kept[k].along;
     const auto wanted = [&](double along) { return field_.at(entry.curve.position(entry.at(from + along))); };
-    const std::vector<double> parts =
-        divided_line(kept[k + 1].along - from, wanted, entry.edge.is_border() ? (8 + spans - 1) / spans : 1);
-    for (std::size_t i = 0; i + 1 < parts.size(); ++i)
-      result.push_back({from + parts[i], i == 0 ? kept[k].crest : std::nullopt});
+    result.push_back(kept[k]);
+    for (const double along :
+         divided_between(kept[k + 1].along - from, wanted, kept[k].first, kept[k + 1].first,
+                         entry.edge.is_border() ? (8 + spans - 1) / spans : 1))
+      result.push_back({from + along, {}});
   }
   result.push_back(kept.back());
   return result;
@@ -294,7 +278,8 @@ Vec2 Divider::ArcEntry::at(double along) const {
 }
 
 // The next node of the chain: at the ends of an arc that is no border by itself, the corner's.
-std::uint32_t Divider::add(ArcEntry& entry, const Vec3& point, const Vec2& q, bool on_crest, bool is_last) {
+std::uint32_t Divider::add(ArcEntry& entry, const Vec3& point, const Vec2& q, const Crossed& crossed,
+                           bool is_last) {
   const SurfacePlace place = shape_.place(entry.body, q);
   const bool is_first = entry.chain.nodes.empty();
   std::uint32_t node = 0;
@@ -306,7 +291,8 @@ std::uint32_t Divider::add(ArcEntry& entry, const Vec3& point, const Vec2& q, bo
   }
   entry.chain.nodes.push_back(node);
   entry.chain.parameters.push_back(q);
-  entry.chain.on_crest.push_back(on_crest);
+  entry.chain.on_crest.push_back(crossed.crest);
+  entry.chain.needle.push_back(crossed.needle);
   return node;
 }
 
@@ -316,6 +302,7 @@ void Divider::close(ArcEntry& entry) {
   chain.nodes.push_back(chain.nodes.front());
   chain.parameters.push_back(chain.parameters.front() + entry.turn);
   chain.on_crest.push_back(chain.on_crest.front());
+  chain.needle.push_back(chain.needle.front());
 }
 
 void Divider::divide(ArcEntry& entry) {
@@ -325,7 +312,8 @@ void Divider::divide(ArcEntry& entry) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     Vec2 q = entry.at(parts[k].along);
     if (parts[k].crest) q.x() = *parts[k].crest;
-    add(entry, entry.curve.position(q), q, parts[k].crest.has_value(), k + 1 == parts.size());
+    add(entry, entry.curve.position(q), q, {parts[k].crest.has_value(), parts[k].first},
+        k + 1 == parts.size());
   }
   if (is_border) close(entry);
 }
@@ -338,14 +326,17 @@ Status Divider::copy(ArcEntry& entry) {
   struct Node {
     double along;
     std::uint32_t low;
-    bool on_crest;
+    Crossed crossed;
     Vec3 point;
   };
   std::vector<Node> order;
   const std::size_t count = original.nodes.size() - (is_border ? 1 : 0);
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3 point = moved(nodes_.points[original.nodes[k]], a);
-    order.push_back({entry.curve.nearest(point).along, original.nodes[k], original.on_crest[k], point});
+    order.push_back({entry.curve.nearest(point).along,
+                     original.nodes[k],
+                     {original.on_crest[k], original.needle[k]},
+                     point});
   }
   if (!is_border) {
     // Ends are ends; the way round is told by them.
@@ -368,7 +359,7 @@ Status Divider::copy(ArcEntry& entry) {
       return does_not_go_on(entry, (miss_ > 0 ? std::numeric_limits<double>::infinity() : 0),
                             nodes_.points[order[k].low]);
     Vec2 q = entry.curve.at(order[k].along);
-    if (order[k].on_crest && !crests_[entry.body].empty()) {
+    if (order[k].crossed.crest && !crests_[entry.body].empty()) {
       double best = std::numeric_limits<double>::infinity();
       for (const double crest : crests_[entry.body]) {
         const double u = crest + period * std::round((q.x() - crest) / period);
@@ -377,7 +368,7 @@ Status Divider::copy(ArcEntry& entry) {
       q.x() = best;
     }
     curves_.opposite[static_cast<std::size_t>(a)][order[k].low] =
-        add(entry, order[k].point, q, order[k].on_crest, k + 1 == order.size());
+        add(entry, order[k].point, q, order[k].crossed, k + 1 == order.size());
   }
   if (is_border) close(entry);
   return {};
@@ -398,9 +389,9 @@ Result<CellCurves> Divider::run() {
 
 }  // namespace
 
-Result<CellCurves> divide_curves(const CellShape& shape, const SizeField& field, double miss,
-                                 CellNodes& nodes) {
-  return Divider(shape, field, miss, nodes).run();
+Result<CellCurves> divide_curves(const CellShape& shape, const CrestTips& tips, const SizeField& field,
+                                 double miss, CellNodes& nodes) {
+  return Divider(shape, tips, field, miss, nodes).run();
 }
 
 }  // namespace selvage::fem

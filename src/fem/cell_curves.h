@@ -51,7 +51,10 @@ struct Chain {
   // On an arc:
   std::vector<Vec2> parameters;  // u runs on past the seam
   std::vector<bool> on_crest;    // u is exactly a crest's
+  std::vector<double> needle;    // of a yarn that ends there in one: its first edge (CrestCrossing), else 0
 };
+
+struct CrestTips;  // fem/crest_tips.h
 
 struct CellCurves {
   std::vector<Chain> chains;  // of Division::edges
@@ -62,7 +65,7 @@ struct CellCurves {
 // Divides the curves as the field has it; those in high faces of periodic axes are copies of the low ones'.
 // Errors (geometry): yarns do not go on where they left on the opposite face, farther than `miss` (file
 // units), with names and place.
-Result<CellCurves> divide_curves(const CellShape& shape, const SizeField& field, double miss,
-                                 CellNodes& nodes);
+Result<CellCurves> divide_curves(const CellShape& shape, const CrestTips& tips, const SizeField& field,
+                                 double miss, CellNodes& nodes);
 
 }  // namespace selvage::fem

@@ -33,4 +33,18 @@ std::vector<double> divided_line(double length, const Wanted& wanted, int least)
   return result;
 }
 
+// Places within such a line, increasing, whose first and last part have lengths of their own (0: as wanted)
+// where there is room for them; in between at least `least` parts.
+template <class Wanted>
+std::vector<double> divided_between(double length, const Wanted& wanted, double first, double last,
+                                    int least) {
+  if (first + last > length / 2) first = last = 0;
+  std::vector<double> places = divided_line(
+      length - first - last, [&](double along) { return wanted(first + along); }, least);
+  for (double& place : places) place += first;
+  if (last == 0) places.pop_back();
+  if (first == 0) places.erase(places.begin());
+  return places;
+}
+
 }  // namespace selvage::fem

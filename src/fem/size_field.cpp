@@ -272,7 +272,7 @@ Box3 widened(const Box3& box, double by) {
 }  // namespace
 
 SizeField size_field(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
-                     int threads) {
+                     int threads, std::vector<SizeField::Bound> more) {
   const Box3 box = cell.bounds();
   const Box3 near = widened(box, 1.5 * rules.coarsest), nearest = widened(box, rules.coarsest);
   std::vector<Raster> rasters(bodies.size());
@@ -296,7 +296,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Parallelepiped& c
         if (nearest.contains(at)) bounds[b].push_back({at, rule.at(raster, i, j)});
       }
   });
-  std::vector<SizeField::Bound> all;
+  std::vector<SizeField::Bound> all = std::move(more);
   for (const auto& some : bounds) all.insert(all.end(), some.begin(), some.end());
   return {rules.coarsest, rules.growth, std::move(all)};
 }

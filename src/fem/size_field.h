@@ -52,10 +52,10 @@ struct SizeRules {
 };
 
 // Bounds on the yarns' surfaces in the box and a little beyond it: the gap to other yarns and to other parts
-// of the same one, the gap to faces of the box that run alongside, curvature. The same for any number of
-// threads.
+// of the same one, the gap to faces of the box that run alongside, curvature; and `more` of them. The same
+// for any number of threads.
 SizeField size_field(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
-                     int threads);
+                     int threads, std::vector<SizeField::Bound> more = {});
 
 // Values of u at which the surface has a sharp crest all along, increasing, first u <= value < last u.
 std::vector<double> crests_of(const nurbs::Surface& surface);

@@ -6,6 +6,7 @@
 #include "core/groups.h"
 #include "core/parallel.h"
 #include "fem/cell_size.h"
+#include "fem/crest_tips.h"
 #include "yarn/in_axes.h"
 
 namespace selvage::fem {
@@ -63,9 +64,10 @@ Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped&
   for (double& volume : skin.volumes) volume *= cell.axes.to_space().determinant();
 
   step("meshing surfaces");
-  const SizeField field = size_field(bodies, cell, rules, options.threads);
   const CellShape shape{bodies, cell, options.periodic, *cut, *division, options.matrix};
-  Result<CellCurves> curves = divide_curves(shape, field, options.miss, skin.nodes);
+  const CrestTips tips = find_crest_tips(shape, rules);
+  const SizeField field = size_field(bodies, cell, rules, options.threads, tips.bounds);
+  Result<CellCurves> curves = divide_curves(shape, tips, field, options.miss, skin.nodes);
   if (!curves) return curves.error();
   Result<CellTriangles> surface = mesh_surfaces(shape, *curves, field, options.threads, skin.nodes);
   if (!surface) return surface.error();
@@ -78,7 +80,7 @@ Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped&
 Result<Skin> make_skin(const yarn::Body& body, double size) {
   const std::span<const yarn::Body> one(&body, 1);
   const double extent = yarn::narrowest_section(body);
-  SizeRules rules = cell_size_rules(one, std::span(&size, 1), 0, extent);
+  SizeRules rules = cell_size_rules(one, std::span(&size, 1), 0, extent, 1);
   rules.gap_factor = 0;
   return make_skin(one, box_round(body), rules, {.tolerance = 1e-3 * extent});
 }

@@ -19,6 +19,7 @@ struct LoopPoint {
   std::uint32_t node;  // of the cell
   Vec2 q;
   bool on_crest;
+  double needle;  // Chain
 };
 
 struct Loop {
@@ -126,7 +127,7 @@ void Unroller::collect_loops() {
     for (std::size_t a = 0; a < piece_.borders[b].arcs.size(); ++a) {
       const Chain& chain = chains_[first_edges_[b] + a];
       for (std::size_t k = 0; k + 1 < chain.nodes.size(); ++k)
-        loop.points.push_back({chain.nodes[k], chain.parameters[k], chain.on_crest[k]});
+        loop.points.push_back({chain.nodes[k], chain.parameters[k], chain.on_crest[k], chain.needle[k]});
     }
     loops_.push_back(std::move(loop));
   }
@@ -193,9 +194,8 @@ void Unroller::add_crest_line(const LoopPoint& low, const LoopPoint& high, doubl
   };
   CrestLine line{u, low.node, high.node, low.q.y(), high.q.y(), {}};
   const auto wanted = [&](double along) { return field_.at(position({u, v_at(along)})); };
-  const std::vector<double> divided = divided_line(lengths.back(), wanted, 1);
-  for (std::size_t k = 1; k + 1 < divided.size(); ++k)
-    line.inner.push_back(new_node({u, v_at(divided[k])}, true));
+  for (const double along : divided_between(lengths.back(), wanted, low.needle, high.needle, 1))
+    line.inner.push_back(new_node({u, v_at(along)}, true));
   crests_.push_back(std::move(line));
 }
 

@@ -14,6 +14,19 @@ namespace {
 // Yarns are bonded where they are within this many times the gap that they keep.
 constexpr double bond_reach = 1.5;
 
+// Its load cases bend it.
+bool is_bent(const Options& options, const ReadyCell& ready) {
+  const std::optional<fem::CellKind> kind = fem::kind_of_cell(ready.periodic);
+  return options.physics == fem::Physics::elastic && !options.pores &&
+         (kind == fem::CellKind::beam || (kind == fem::CellKind::plate && options.matrix));
+}
+
+// Of the elements.
+int order_of(const Options& options, const ReadyCell& ready) {
+  if (options.order > 0) return options.order;
+  return options.joining != fem::Joining::cohesive && is_bent(options, ready) ? 2 : 1;
+}
+
 }  // namespace
 
 std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
@@ -31,7 +44,8 @@ std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fa
   }
   if (!check_free_faces(job, fabric, ready.bodies, ready.periodic)) return std::nullopt;
   if (options.voxels > 0) return ready;
-  const std::optional<CellSize> size = check_cell_size(job, fabric, ready.bodies, options.matrix);
+  const std::optional<CellSize> size =
+      check_cell_size(job, fabric, ready.bodies, order_of(options, ready), options.matrix);
   if (!size || !check_grazed_faces(job, fabric, ready.bodies) ||
       !check_cell_gaps(job, fabric, ready.bodies, job.gap))
     return std::nullopt;
@@ -41,18 +55,10 @@ std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fa
 
 namespace {
 
-// Its load cases bend it.
-bool is_bent(const Options& options, const ReadyCell& ready) {
-  const std::optional<fem::CellKind> kind = fem::kind_of_cell(ready.periodic);
-  return options.physics == fem::Physics::elastic && !options.pores &&
-         (kind == fem::CellKind::beam || (kind == fem::CellKind::plate && options.matrix));
-}
-
 // Bending is a quadratic displacement, which elements of order 1 follow by shearing.
 void say_what_bending_costs(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready) {
-  const bool is_straight =
-      job.options.order == 1 || (job.options.order == 0 && job.options.joining == fem::Joining::cohesive);
-  if (!is_bent(job.options, ready) || (job.options.voxels == 0 && !is_straight)) return;
+  if (!is_bent(job.options, ready)) return;
+  if (job.options.voxels == 0 && order_of(job.options, ready) == 2) return;
   const char* what = fem::beam_axis(ready.periodic) ? "beam" : "plate";
   job.say(at_cell(
       fabric,
@@ -82,8 +88,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   fem::CellMeshOptions options{mesh_options(job)};
   options.sizes = ready.size.sizes;
   options.coarsest = ready.size.coarsest;
-  const bool may_curve = given.joining != fem::Joining::cohesive;
-  options.order = given.order > 0 ? given.order : may_curve && is_bent(given, ready) ? 2 : 1;
+  options.order = order_of(given, ready);
   options.joining = given.joining;
   options.matrix = given.matrix;
   options.pores = given.pores;

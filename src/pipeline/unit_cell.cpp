@@ -512,9 +512,8 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
 namespace {
 
 // Edges on each yarn: of --size, or so long that --segments of them go round it, the shorter of both; without
-// these a quarter of the side of the square that is as large as its section (of a flat tow a quarter of its
-// thickness would be millions of tetrahedra), at most its thickness.
-std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body> bodies) {
+// these a share of the side of the square that is as large as its section, at most its thickness.
+std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body> bodies, int order) {
   std::vector<double> sizes;
   for (const yarn::Body& body : bodies) {
     double size = options.size > 0.0 ? options.size : infinity;
@@ -523,7 +522,8 @@ std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body>
       size = std::min(size, fem::section_perimeter(body, middle) / options.segments);
     }
     if (size == infinity)
-      size = std::min(std::sqrt(body.volume / body.length) / 4.0, yarn::narrowest_section(body));
+      size = std::min(std::sqrt(body.volume / body.length) / fem::edges_per_side(order),
+                      yarn::narrowest_section(body));
     sizes.push_back(size);
   }
   return sizes;
@@ -554,10 +554,10 @@ void keep_to_thickness(Job& job, const fabric::Fabric& fabric, std::span<const y
 }  // namespace
 
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
-                                        std::span<const yarn::Body> bodies, bool with_matrix) {
+                                        std::span<const yarn::Body> bodies, int order, bool with_matrix) {
   constexpr double most = 1e8;
   constexpr double growth = 2;  // of edges away from the yarns, where nobody says how long they are
-  CellSize chosen{.sizes = sizes_of(job.options, bodies), .coarsest = job.options.matrix_size};
+  CellSize chosen{.sizes = sizes_of(job.options, bodies, order), .coarsest = job.options.matrix_size};
   keep_to_thickness(job, fabric, bodies, chosen.sizes);
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
   if (job.options.matrix_size == 0 && job.options.size == 0 && job.options.segments == 0)
@@ -569,7 +569,7 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
   chosen.tetrahedra = fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, chosen.coarsest,
-                                               with_matrix, static_cast<int>(job.threads));
+                                               order, with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);

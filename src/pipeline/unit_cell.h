@@ -62,6 +62,6 @@ struct CellSize {
 // None: too coarse for a yarn, too fine for any memory (without --force), or in the matrix finer than on the
 // yarns.
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
-                                        std::span<const yarn::Body> bodies, bool with_matrix);
+                                        std::span<const yarn::Body> bodies, int order, bool with_matrix);
 
 }  // namespace selvage::pipeline

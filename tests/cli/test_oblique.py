@@ -9,8 +9,10 @@ import subprocess
 import sys
 import unittest
 
+import meshio
 import numpy as np
 
+import unit_cell as cell
 from program import Case
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -18,6 +20,29 @@ HOMOGENIZE = ROOT / "scripts" / "homogenize.py"
 TWILL = (ROOT / "samples" / "cell_twill.txt").read_text()
 VECTORS = "cell vectors 4.8 0 0  -1.2 1.2 0"
 
+
+TOW = """fabric 1
+units mm
+material carbon
+  elastic transverse 140000 9000 0.3 4500 0.4
+end
+material epoxy
+  elastic isotropic 3400 0.35
+end
+thread tow
+  section  lenticular 1.9 0.12
+  material carbon
+end
+yarn straight tow
+  path
+    0 -9 0
+    0 9 0
+  end
+end
+cell vectors {}
+  matrix epoxy
+end
+"""
 
 VOXELS = 0.12  # what stairs of 0.15 on yarns 0.5 thick may change, of the roots of the diagonal
 
@@ -150,6 +175,16 @@ class Oblique(Case):
         deck, _ = self.mesh(TWILL.replace(VECTORS, right), "right", "--voxel", "16")
         self.assertAlmostEqual(np.linalg.det(Deck(deck).cell[1:, :])
                                / Deck(deck).cell[3][2], 4 * 1.2**2, 9)
+
+    def test_a_flat_tow_that_the_face_cuts_at_a_slant(self):
+        """Its lens of 14.5 degrees ends in needles, 4.6 degrees sharp in the face; tetrahedra are hardly flatter than the lens."""
+        for vectors in ("2 2 0  -1 3 0  0 0 0.4 at -0.5 -2.5 -0.2", "1 3 0  -4 4 0  0 0 0.4 at 1 -3 -0.2"):
+            with self.subTest(vectors=vectors):
+                source, mesh = self.folder / "tow.txt", self.folder / "tow.msh"
+                source.write_text(TOW.format(vectors))
+                self.succeeds("mesh", source, "--matrix", "--order", "1", "-o", mesh)
+                read = meshio.read(mesh)
+                self.assertGreater(cell.dihedral_angles(read.points, read.cells_dict["tetra"]).min(), 11.5)
 
     def test_a_planar_triaxial_braid_in_calculix(self):
         text = (ROOT / "samples" / "cell_braid.txt").read_text().replace("periodic x y", "periodic x y z")
