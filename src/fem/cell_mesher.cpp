@@ -112,7 +112,7 @@ Status CellMesher::make_surfaces() {
   options.threads = options_.threads;
   options.progress = [&, done = std::size_t{0}](const char* name) mutable { step(name, done++); };
   Result<Skin> skin = make_skin(
-      bodies_, cell_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_, options_.order), options);
+      bodies_, cell_, cell_size_rules(bodies_, sizes_, options_.coarsest, options_.growth, extent_), options);
   if (!skin) return skin.error().placed(fabric_.cell->place, fabric_.file);
   for (Message& note : skin->notes) diagnostics_.add(located(note));
   if (options_.order == 1)

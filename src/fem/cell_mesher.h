@@ -17,9 +17,10 @@ namespace selvage::fem {
 struct CellMeshOptions : MeshOptions {
   std::vector<double> sizes{};  // one a body: the largest edge on its surface; empty: `size`
   double coarsest = 0;          // file units: to which edges may grow away from the yarns; 0: as on the yarns
-  bool matrix = true;           // false: only the yarns, cut flush
-  bool pores = false;           // with `matrix`: only that, with patches (fem/pores.h)
-  LayerOptions layers{};        // with `pores`, order 1: along the walls; count 0: none; file units
+  double growth = usual_growth;  // of edges, per length
+  bool matrix = true;            // false: only the yarns, cut flush
+  bool pores = false;            // with `matrix`: only that, with patches (fem/pores.h)
+  LayerOptions layers{};         // with `pores`, order 1: along the walls; count 0: none; file units
   // File units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none.
   double bond = 0;
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles

@@ -38,9 +38,9 @@ double raster_step(std::span<const yarn::Body> bodies) {
 }  // namespace
 
 SizeRules cell_size_rules(std::span<const yarn::Body> bodies, std::span<const double> sizes, double coarsest,
-                          double extent, int order) {
+                          double growth, double extent) {
   SizeRules rules;
-  if (order == 2) rules.growth = 0.6;
+  rules.growth = growth;
   rules.coarsest = std::max(*std::max_element(sizes.begin(), sizes.end()), coarsest);
   rules.smallest = least_edge_share * extent;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -53,7 +53,7 @@ SizeRules cell_size_rules(std::span<const yarn::Body> bodies, std::span<const do
 }
 
 double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepiped& cell,
-                           std::span<const double> sizes, double coarsest, int order, bool matrix,
+                           std::span<const double> sizes, double coarsest, double growth, bool matrix,
                            int threads) {
   // Of the cube of the edge length, a tetrahedron on average: more than where all edges are as long (0.083
   // where yarns are far apart), less than what the one layer of them in a narrow gap has.
@@ -61,7 +61,7 @@ double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepi
   constexpr int samples = 50'000;
   double extent = std::numeric_limits<double>::infinity();
   for (const yarn::Body& body : bodies) extent = std::min(extent, yarn::narrowest_section(body));
-  SizeRules rules = cell_size_rules(bodies, sizes, coarsest, extent, order);
+  SizeRules rules = cell_size_rules(bodies, sizes, coarsest, growth, extent);
   rules.raster = raster_step(bodies);
   const SizeField field = size_field(bodies, cell, rules, threads);
   // Places that fill the cell evenly: multiples of the powers of the root of r^4 = r + 1 (Roberts's

@@ -10,17 +10,10 @@
 namespace selvage::fem {
 
 // What the mesh of a cell keeps to: `sizes` are the largest edges on each body, `coarsest` is how long they
-// may get away from them (at least the largest of these), `extent` the smallest section extent of the bodies
-// in the box; file units. Edges of ten-node tetrahedra (`order` 2), whose fields are of one degree more, grow
-// faster.
+// may get away from them (at least the largest of these), `growth` how much per length, `extent` the smallest
+// section extent of the bodies in the box; file units.
 SizeRules cell_size_rules(std::span<const yarn::Body> bodies, std::span<const double> sizes, double coarsest,
-                          double extent, int order);
-
-// Edges on a yarn where no size is given: so many to the side of the square that is as large as its section
-// (of a flat tow a quarter of its thickness would be millions of tetrahedra).
-constexpr double edges_per_side(int order) {
-  return order == 2 ? 3 : 4;
-}
+                          double growth, double extent);
 
 // Of the smallest section extent: no edge is shorter for a gap's sake, no two yarns may be nearer.
 inline constexpr double least_edge_share = 0.01;
@@ -29,7 +22,7 @@ inline constexpr double least_edge_share = 0.01;
 // places all over the box. Its effort is bounded, however small the sizes are. `matrix`: with it; else the
 // yarns alone. The same for any number of threads.
 double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepiped& cell,
-                           std::span<const double> sizes, double coarsest, int order, bool matrix,
+                           std::span<const double> sizes, double coarsest, double growth, bool matrix,
                            int threads);
 
 }  // namespace selvage::fem

@@ -35,6 +35,9 @@ class SizeField {
   std::vector<Node> nodes_;
 };
 
+// Of edges away from what asks for short ones, per length.
+inline constexpr double usual_growth = 0.5;
+
 struct SizeRules {
   struct Yarn {
     double largest = 0;  // on its surface, file units, > 0
@@ -46,9 +49,9 @@ struct SizeRules {
   // Edges over the width of a gap; 0: gaps are not meshed. Tetrahedra in it get flatter with it, and what
   // yarns lack of their volume there the rest of them has to make up.
   double gap_factor = 5;
-  double growth = 0.5;        // of the size, per length
-  double raster = 0;          // places on a yarn are no nearer; they are at 0.4 of its largest
-  double turn_finest = 0.35;  // curvature alone asks for no less than this share of the yarn's largest
+  double growth = usual_growth;  // of the size, per length
+  double raster = 0;             // places on a yarn are no nearer; they are at 0.4 of its largest
+  double turn_finest = 0.35;     // curvature alone asks for no less than this share of the yarn's largest
 };
 
 // Bounds on the yarns' surfaces in the box and a little beyond it: the gap to other yarns and to other parts

@@ -80,7 +80,7 @@ Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped&
 Result<Skin> make_skin(const yarn::Body& body, double size) {
   const std::span<const yarn::Body> one(&body, 1);
   const double extent = yarn::narrowest_section(body);
-  SizeRules rules = cell_size_rules(one, std::span(&size, 1), 0, extent, 1);
+  SizeRules rules = cell_size_rules(one, std::span(&size, 1), 0, usual_growth, extent);
   rules.gap_factor = 0;
   return make_skin(one, box_round(body), rules, {.tolerance = 1e-3 * extent});
 }

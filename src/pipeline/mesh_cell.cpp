@@ -88,6 +88,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   fem::CellMeshOptions options{mesh_options(job)};
   options.sizes = ready.size.sizes;
   options.coarsest = ready.size.coarsest;
+  options.growth = ready.size.growth;
   options.order = order_of(given, ready);
   options.joining = given.joining;
   options.matrix = given.matrix;

@@ -511,6 +511,16 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
 
 namespace {
 
+// Edges where nobody says how long they are. Tetrahedra of ten nodes follow more with fewer.
+struct UsualEdges {
+  double to_a_side = 4;  // of the square that is as large as a yarn's section
+  double growth = fem::usual_growth;
+};
+
+constexpr UsualEdges usual_edges(int order) {
+  return order == 2 ? UsualEdges{3, 0.6} : UsualEdges{};
+}
+
 // Edges on each yarn: of --size, or so long that --segments of them go round it, the shorter of both; without
 // these a share of the side of the square that is as large as its section, at most its thickness.
 std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body> bodies, int order) {
@@ -522,7 +532,7 @@ std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body>
       size = std::min(size, fem::section_perimeter(body, middle) / options.segments);
     }
     if (size == infinity)
-      size = std::min(std::sqrt(body.volume / body.length) / fem::edges_per_side(order),
+      size = std::min(std::sqrt(body.volume / body.length) / usual_edges(order).to_a_side,
                       yarn::narrowest_section(body));
     sizes.push_back(size);
   }
@@ -556,12 +566,15 @@ void keep_to_thickness(Job& job, const fabric::Fabric& fabric, std::span<const y
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                                         std::span<const yarn::Body> bodies, int order, bool with_matrix) {
   constexpr double most = 1e8;
-  constexpr double growth = 2;  // of edges away from the yarns, where nobody says how long they are
-  CellSize chosen{.sizes = sizes_of(job.options, bodies, order), .coarsest = job.options.matrix_size};
+  constexpr double away =
+      2;  // edges away from the yarns to those on them, where nobody says how long they are
+  const bool is_usual = job.options.size == 0 && job.options.segments == 0;
+  CellSize chosen{.sizes = sizes_of(job.options, bodies, order),
+                  .coarsest = job.options.matrix_size,
+                  .growth = is_usual ? usual_edges(order).growth : fem::usual_growth};
   keep_to_thickness(job, fabric, bodies, chosen.sizes);
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
-  if (job.options.matrix_size == 0 && job.options.size == 0 && job.options.segments == 0)
-    chosen.coarsest = growth * *coarsest;
+  if (job.options.matrix_size == 0 && is_usual) chosen.coarsest = away * *coarsest;
   if (job.options.matrix_size > 0 && job.options.matrix_size < *finest)
     return job.fail(
         error(Kind::usage,
@@ -569,7 +582,7 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
   chosen.tetrahedra = fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, chosen.coarsest,
-                                               order, with_matrix, static_cast<int>(job.threads));
+                                               chosen.growth, with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);

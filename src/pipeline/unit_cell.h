@@ -57,6 +57,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
 struct CellSize {
   std::vector<double> sizes;  // of each yarn, file units
   double coarsest = 0;        // away from them; 0: as on them
+  double growth = 0;          // per length
   double tetrahedra = 0;
 };
 // None: too coarse for a yarn, too fine for any memory (without --force), or in the matrix finer than on the

@@ -76,9 +76,10 @@ struct CellOfYarn {
 void fill(CellOfYarn& cell, double size) {
   const std::span<const yarn::Body> one(&cell.body, 1);
   const Box3 box(Vec3(0, -1, -1), Vec3(2, 1, 1));
-  Result<Skin> skin =
-      make_skin(one, box, cell_size_rules(one, std::span(&size, 1), 0, yarn::narrowest_section(cell.body), 1),
-                {.tolerance = 1e-4, .miss = 1e-3, .periodic = {true, false, false}});
+  Result<Skin> skin = make_skin(
+      one, box,
+      cell_size_rules(one, std::span(&size, 1), 0, usual_growth, yarn::narrowest_section(cell.body)),
+      {.tolerance = 1e-4, .miss = 1e-3, .periodic = {true, false, false}});
   ASSERT_TRUE(skin.ok()) << to_string(skin.error());
   cell.block.emplace(one, Unit::inch, box, std::array{true, false, false}, std::move(*skin));
   const CellTriangles& surface = cell.block->skin.surface;

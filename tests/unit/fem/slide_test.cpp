@@ -29,7 +29,7 @@ struct Crossing {
   Crossing() {
     const Parallelepiped cell(Box3(Vec3(0, 0, 0), Vec3(1, 1, 0.7)));
     const std::vector<double> sizes(2, 0.1);
-    Result<Skin> skin = make_skin(bodies, cell, cell_size_rules(bodies, sizes, 0, 0.2, 1),
+    Result<Skin> skin = make_skin(bodies, cell, cell_size_rules(bodies, sizes, 0, usual_growth, 0.2),
                                   {.tolerance = 2e-4, .miss = 2e-3, .matrix = true});
     if (!skin) throw std::runtime_error(to_string(skin.error()));
     block.emplace(bodies, Unit::mm, cell, std::array<bool, 3>{}, std::move(*skin));
