@@ -55,11 +55,12 @@ class Steps {
         shares_(count, 1.0F),
         partner_(count, none) {}
 
-  void move(std::size_t k, const Vec3& to) {
+  void move(std::size_t k, const Vec3& to, std::size_t region) {
     Vec3& node = mesh_.nodes[corners_ + k];
     steps_[k] = to - node;
     node = to;
     moved_.push_back(k);
+    if (region != CurvedEdge::none) of_regions_.push_back({region, k});
   }
   void tie(std::size_t a, std::size_t b) {
     partner_[a] = b;
@@ -90,6 +91,35 @@ class Steps {
       watched = elements_at(touched);
     }
   }
+  // All that may move for a region go on by the same share of their steps, as far as its volume takes: but
+  // those at elements that would fold.
+  void keep(std::span<const double> volumes) {
+    constexpr int rounds = 4;
+    std::sort(of_regions_.begin(), of_regions_.end());
+    const std::vector<OfRegion> all = of_regions_;
+    for (int round = 0; round < rounds; ++round) {
+      for (auto first = of_regions_.begin(); first != of_regions_.end();) {
+        const auto last = std::find_if(first, of_regions_.end(),
+                                       [&](const OfRegion& other) { return other.first != first->first; });
+        if (first->first < volumes.size() && volumes[first->first] > 0)
+          stretch(first->first, {first, last}, volumes[first->first]);
+        first = last;
+      }
+      std::vector<std::uint8_t> stays(steps_.size(), 0);
+      bool is_kept = true;
+      for (const std::size_t e : curved_elements_) {
+        if (is_sound(mesh_, e)) continue;
+        is_kept = false;
+        for (std::size_t slot = 4; slot < 10; ++slot) stays[mesh_.elements[e][slot] - corners_] = 1;
+      }
+      if (is_kept) return;
+      std::erase_if(of_regions_, [&](const OfRegion& one) {
+        if (stays[one.second] != 0) place(one.second, 0);
+        return stays[one.second] != 0;
+      });
+    }
+    for (const auto& [region, k] : all) place(k, 0);
+  }
   [[nodiscard]] MidsideNodes result() const {
     MidsideNodes result;
     for (const std::size_t k : moved_) {
@@ -102,6 +132,34 @@ class Steps {
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  using OfRegion = std::pair<std::size_t, std::size_t>;  // a region, and one of the nodes
+
+  void place(std::size_t k, double more) {
+    if (!steps_[k].isZero(0)) mesh_.nodes[corners_ + k] = chords_[k] + steps_[k] * (shares_[k] * (1 + more));
+  }
+  void stretch(std::size_t r, std::span<const OfRegion> nodes, double wanted) {
+    constexpr double most = 0.25, probe = 0.02, close = 1e-9;
+    constexpr int rounds = 6;
+    const Region& region = mesh_.regions[r];
+    const auto lacking_at = [&](double more) {
+      for (const auto& [number, k] : nodes) place(k, more);
+      double volume = 0;
+      for (std::size_t e = region.first_element; e < region.last_element; ++e) volume += volume_of(mesh_, e);
+      return wanted - volume;
+    };
+    double before = 0, more = probe, lacked = lacking_at(before), lacks = lacking_at(more);
+    for (int round = 0; round < rounds && std::abs(lacks) > close * wanted; ++round) {
+      const double next = more - lacks * (more - before) / (lacks - lacked);
+      if (!(std::abs(next) < most)) {
+        lacking_at(0);
+        return;
+      }
+      before = more;
+      lacked = lacks;
+      more = next;
+      lacks = lacking_at(more);
+    }
+  }
   static float halved(float share) { return share > 0.2F ? share / 2 : 0.0F; }
   void halve(std::size_t k) {
     shares_[k] = halved(shares_[k]);
@@ -142,6 +200,7 @@ class Steps {
   std::vector<Vec3> steps_, chords_;  // where each node wants to be, as a step from the chord
   std::vector<float> shares_;         // of the step that is taken
   std::vector<std::size_t> partner_, moved_;
+  std::vector<OfRegion> of_regions_;
   std::vector<std::size_t> curved_elements_;  // with such an edge
 };
 
@@ -198,7 +257,7 @@ void sort_edges(std::vector<CurvedEdge>& edges) {
 }
 
 MidsideNodes add_midside_nodes(Mesh& mesh, std::span<const CurvedEdge> curved,
-                               std::span<const TiedEdges> tied) {
+                               std::span<const TiedEdges> tied, std::span<const double> volumes) {
   const std::size_t corners = mesh.nodes.size();
   const std::vector<std::uint64_t> keys = add_straight(mesh);
   const auto number = [&keys](std::uint64_t key) {
@@ -207,12 +266,13 @@ MidsideNodes add_midside_nodes(Mesh& mesh, std::span<const CurvedEdge> curved,
   };
   Steps steps(mesh, corners, keys.size());
   for (const CurvedEdge& edge : curved)
-    if (const std::size_t k = number(edge.key); k < keys.size()) steps.move(k, edge.middle);
+    if (const std::size_t k = number(edge.key); k < keys.size()) steps.move(k, edge.middle, edge.region);
   for (const TiedEdges& pair : tied) {
     const std::size_t a = number(pair.a), b = number(pair.b);
     if (a < keys.size() && b < keys.size()) steps.tie(a, b);
   }
   steps.hold();
+  steps.keep(volumes);
   return steps.result();
 }
 

@@ -15,8 +15,10 @@ namespace selvage::fem {
 
 // An edge of the boundary and where its middle is wanted.
 struct CurvedEdge {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::uint64_t key = 0;
   Vec3 middle = Vec3::Zero();
+  std::size_t region = none;  // for whose volume the middle may go farther; none: it stays
 };
 
 // An edge's end on a yarn's surface, in file units.
@@ -41,9 +43,10 @@ struct TiedEdges {
 
 // Gives the corner-only elements of a mesh six midside nodes, in increasing order of their edges' keys, on
 // the chords or where `curved` (increasing keys, each once) has them, and takes these back toward the chord
-// where an element would fold; see midside.h.
+// where an element would fold; then all of a region's go a share of their ways farther, so that it has its
+// volume (mm3, one a region; 0, or none at all: as it comes); see midside.h.
 MidsideNodes add_midside_nodes(Mesh& mesh, std::span<const CurvedEdge> curved,
-                               std::span<const TiedEdges> tied);
+                               std::span<const TiedEdges> tied, std::span<const double> volumes = {});
 
 // Increasing keys; the first of equal ones stays.
 void sort_edges(std::vector<CurvedEdge>& edges);

@@ -100,8 +100,16 @@ std::vector<CurvedEdge> CellEdges::curved() const {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   std::vector<CurvedEdge> result;
-  for (const std::uint64_t key : keys)
-    if (const auto at = middle(key >> 32U, key & 0xffffffffU)) result.push_back({key, *at});
+  for (const std::uint64_t key : keys) {
+    const std::size_t a = key >> 32U, b = key & 0xffffffffU;
+    const auto at = middle(a, b);
+    if (!at) continue;
+    const auto region = std::ranges::find(block_.of_regions, places_[a].body);
+    const bool is_free = face_axis(a, b) < 0 && region != block_.of_regions.end();
+    result.push_back(
+        {key, *at,
+         is_free ? static_cast<std::size_t>(region - block_.of_regions.begin()) : CurvedEdge::none});
+  }
   const CellTriangles& surface = block_.skin.surface;
   for (const CellTriangles::Cap& cap : surface.caps)
     for (const Triangle& t : std::span(surface.triangles).subspan(cap.first, cap.count))
@@ -176,7 +184,12 @@ MidsideNodes add_midside_nodes(Mesh& mesh, const Block& block) {
   const CellEdges cell(mesh, block);
   std::vector<CurvedEdge> edges = cell.curved();
   const std::vector<TiedEdges> tied = cell.tie(edges);
-  return add_midside_nodes(mesh, edges, tied);
+  const double scale = millimetres_per(block.units);
+  std::vector<double> volumes(mesh.regions.size(), 0);
+  for (std::size_t r = 0; r < volumes.size(); ++r)
+    if (block.of_regions[r] != CellTriangles::matrix)
+      volumes[r] = scale * scale * scale * block.skin.volumes[block.of_regions[r]];
+  return add_midside_nodes(mesh, edges, tied, volumes);
 }
 
 }  // namespace selvage::fem

@@ -18,7 +18,9 @@ struct Block;
 // the nodes, and sets order 2. Edges of sides between regions, or outside, whose corners stand on one yarn's
 // surface are curved: their middles lie on it, those of edges in a face of the box exactly in that face, and
 // those of opposite faces where the cell is periodic are the same to the bit. They are taken back toward the
-// chord where a scaled Jacobian would fall below 0.1 (or 0.9 of the straight one where that is lower).
+// chord where a scaled Jacobian would fall below 0.1 (or 0.9 of the straight one where that is lower). Away
+// from the faces of the box those of a yarn stand off its surface by a share of their heights over the chord,
+// a few hundredths, so that the yarn has its volume.
 MidsideNodes add_midside_nodes(Mesh& mesh, const Block& block);
 
 }  // namespace selvage::fem
