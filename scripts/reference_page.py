@@ -13,9 +13,9 @@ The error that is stated of a mesh (after Roache, J. Fluids Eng. 116 (1994) 405-
 
 - Coarse and medium know the change from one to the other. The medium mesh states three times that, the coarse one four times: how far the medium
   one is, and that one's error.
-- Fine: 1.25 times the change to the extrapolated value, by the order of convergence that the three show, where it is one that is believed (2 to 5
-  of tetrahedra, 1 to 3 of voxels). Else three times the last change, where changes shrink even faster, or three times the range of all three; the fine
-  value stands for the extrapolated one then.
+- Fine: 1.25 times the change to the extrapolated value, by the order of convergence that the three show, where it is one that is believed (of
+  tetrahedra 2 to 4, of flow to 5; of voxels 1 to 3). Else three times the last change, where changes shrink even faster, or three times the range of all
+  three; the fine value stands for the extrapolated one then.
 - Each entry of a tensor has the relative error of its worst one, so that no coincidence is taken for precision.
 
 Meshes agree when each value is as near to the extrapolated one of its kind, and to the closed form where there is one, as it states, and when
