@@ -186,6 +186,19 @@ class Oblique(Case):
                 read = meshio.read(mesh)
                 self.assertGreater(cell.dihedral_angles(read.points, read.cells_dict["tetra"]).min(), 11.5)
 
+    def test_ten_nodes_have_longer_edges_where_nobody_says_how_long(self):
+        """A third of the square's side where four nodes have a quarter."""
+        source, mesh = self.folder / "tow.txt", self.folder / "tow.msh"
+        source.write_text(TOW.format("3 0 0  1 3 0  0 0 0.4 at -2 -1.5 -0.2"))
+        counts = {}
+        for size in ((), ("--size", "0.1")):
+            for order, kind in (("1", "tetra"), ("2", "tetra10")):
+                self.succeeds("mesh", source, "--matrix", "--order", order, *size, "-o", mesh)
+                counts[order, size] = len(meshio.read(mesh).cells_dict[kind])
+        self.assertLess(counts["2", ()], 0.8 * counts["1", ()])
+        given = ("--size", "0.1")
+        self.assertAlmostEqual(counts["2", given] / counts["1", given], 1, delta=0.02)
+
     def test_a_planar_triaxial_braid_in_calculix(self):
         text = (ROOT / "samples" / "cell_braid.txt").read_text().replace("periodic x y", "periodic x y z")
         deck, _ = self.mesh(text, "braid", "--size", "0.25", "--order", "1")
