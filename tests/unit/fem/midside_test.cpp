@@ -134,20 +134,22 @@ TEST(CellMidside, OffTheSurfaceByOneShareOnItInTheFacesAndOppositeOnesAlike) {
   EXPECT_GT(low.size(), 20U);
   // The caps' own triangulations are the same; so are the middles of all their edges.
   EXPECT_EQ(low, high);
-  // Of every twentieth edge of the surface: in the faces its middle is on the surface, elsewhere it stands
-  // off by one share of its height over the chord.
+  // Of the edges of the surface: in the faces the middles are on it, elsewhere they stand off by one share of
+  // their heights over the chord (every sixtieth is looked at).
   struct Looked {
     Vec3 chord, middle;
     bool is_in_face;
   };
   std::vector<Looked> edges;
   const auto& sides = cell.mesh.regions[0].side_faces;
-  for (const SixNodes& six : six_node_faces(cell.mesh, cell.mesh.regions[0], sides)) {
-    if (++looked_at % 20 != 0) continue;
-    const Vec3& middle = cell.mesh.nodes[six[3]];
-    edges.push_back({Vec3(cell.mesh.nodes[six[0]] + cell.mesh.nodes[six[1]]) / (2 * mm), middle / mm,
-                     middle.x() == cell.box.min().x() || middle.x() == cell.box.max().x()});
-  }
+  for (const SixNodes& six : six_node_faces(cell.mesh, cell.mesh.regions[0], sides))
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& middle = cell.mesh.nodes[six[3 + k]];
+      const bool is_in_face = middle.x() == cell.box.min().x() || middle.x() == cell.box.max().x();
+      if (!is_in_face && ++looked_at % 60 != 0) continue;
+      const Vec3 ends = cell.mesh.nodes[six[k]] + cell.mesh.nodes[six[(k + 1) % 3]];
+      edges.push_back({ends / (2 * mm), middle / mm, is_in_face});
+    }
   const auto height = [](const Looked& edge) {
     return edge.is_in_face ? 0 : (edge.middle - edge.chord).norm();
   };
@@ -158,6 +160,9 @@ TEST(CellMidside, OffTheSurfaceByOneShareOnItInTheFacesAndOppositeOnesAlike) {
   const auto back = [](const Looked& edge, double share) -> Vec3 {
     return edge.chord + (edge.middle - edge.chord) * (1 - share);
   };
+  const auto in_faces = std::ranges::count_if(edges, &Looked::is_in_face);
+  EXPECT_GE(in_faces, 20);
+  EXPECT_GE(static_cast<std::ptrdiff_t>(edges.size()) - in_faces, 20);
   double share = off / height(highest);
   if (distance_to(cell.body, back(highest, share)) > off / 10) share = -share;
   EXPECT_LT(std::abs(share), 0.1);
