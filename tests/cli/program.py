@@ -16,6 +16,11 @@ PATH = str(SAMPLES / "plain4_path.txt")
 RING = str(SAMPLES / "ring.txt")
 BAD = SAMPLES / "bad"
 
+# Set by the nightly run: what takes long and differs little from sample to sample is tried on all samples, otherwise on the
+# smallest of each family.
+EVERYTHING = os.environ.get("SELVAGE_EVERYTHING") == "1"
+FAMILIES = ("weave", "knit", "warpknit", "braid", "leno", "layers", "stack", "piece", "yarn")
+
 # The library of pages, which npm gives (scripts/setup): where it is not, the program says so, and there is no page to test.
 HAS_PAGES = (pathlib.Path(PROGRAM).parent / "three.module.min.js").exists()
 NO_PAGES = "three.js is not there: no pages are made"
@@ -37,6 +42,19 @@ yarn one rod
   end
 end
 """
+
+
+def family_of(sample):
+    """The kind of fabric of a sample: its first statement that makes yarns or pieces."""
+    if sample.suffix != ".txt":
+        return sample.suffix
+    words = (line.split()[0].lower() for line in sample.read_text(encoding="utf-8-sig").splitlines() if line.split())
+    return next((word for word in words if word in FAMILIES), "other")
+
+
+def smallest_of_each_family(samples):
+    by_size = sorted(samples, key=lambda sample: (sample.stat().st_size, sample.name), reverse=True)
+    return sorted({family_of(sample): sample for sample in by_size}.values())
 
 
 def is_page(line):

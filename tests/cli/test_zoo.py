@@ -1,4 +1,4 @@
-"""Every sample of samples/ goes the whole way: IGES and STEP, `check`, and gmsh's reader of STEP.
+"""Every sample of samples/ goes the whole way: IGES and STEP, `check`, gmsh's reader of STEP, and IGES to IGES and back from TXT.
 
 `check` finds nothing: every yarn is a closed, valid solid, and none overlaps another one or itself. SELVAGE_ZOO=I/N takes
 the I-th of N parts of the samples.
@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import unittest
 
+from iges_trip import IgesTrip
 from program import Case, SAMPLES, run
 
 GMSH = os.environ.get("SELVAGE_GMSH") or shutil.which("gmsh")
@@ -19,7 +20,7 @@ ZOO = sorted(path for path in SAMPLES.iterdir() if path.suffix in READABLE)
 PART, PARTS = map(int, os.environ.get("SELVAGE_ZOO", "0/1").split("/"))
 
 
-class Zoo(Case):
+class Zoo(IgesTrip):
     def entry(self, command, sample, *options):
         """The sample's entry in the command's report, and the exit code."""
         report = self.folder / f"{sample.stem}.{command}.json"
@@ -46,6 +47,8 @@ class Zoo(Case):
         converted, _ = self.entry("convert", sample, "-o", self.folder)
         written = {output["format"]: output for output in converted["outputs"]}
         self.assertEqual(set(written), {"iges", "step"})
+        if sample.suffix in (".txt", ".wif"):
+            self.expect_same_after_trip(self.folder / (sample.stem + ".igs"))
         checked, done = self.entry("check", sample)
         yarns = checked.get("yarns", [])
         for yarn in yarns:

@@ -20,7 +20,7 @@ namespace {
 using fabric::Braid;
 using fabric::YarnPlan;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A centre line unrolled: along the axis, round it (or across the strip), and through the thickness.
 struct Unrolled {

@@ -176,7 +176,7 @@ const Knit& knit_of(const fabric::Fabric& fabric) {
   return std::get<Knit>(fabric.items.front());
 }
 
-std::string text_of(const std::vector<std::string>& faults) {
+std::string lines_of(const std::vector<std::string>& faults) {
   std::string text;
   for (const std::string& fault : faults) text += fault + "\n";
   return text;
@@ -250,7 +250,7 @@ TEST(KnitTopology, EveryLoopOfTheZooPassesThroughTheOneBelow) {
     if (zoo->fabric.items.size() != 1 || zoo->fabric.cell || !is_simple(knit_of(zoo->fabric))) continue;
     ++knits;
     const std::vector<std::string> faults = faults_of(knit_of(zoo->fabric), courses_of(zoo->fabric));
-    EXPECT_TRUE(faults.empty()) << zoo->name << "\n" << text_of(faults);
+    EXPECT_TRUE(faults.empty()) << zoo->name << "\n" << lines_of(faults);
   }
   EXPECT_GE(knits, 8U);
 }
@@ -273,7 +273,7 @@ TEST(KnitTopology, EveryChartThatCanBeDrawn) {
     // Six tucks on one loop lie in one another as drawn: there is no way to part them.
     const bool may_warn = &rows == &charts.front();
     const std::vector<std::string> faults = faults_of(knit_of(fabric), courses_of(fabric, false, may_warn));
-    EXPECT_TRUE(faults.empty()) << rows << "\n" << text_of(faults);
+    EXPECT_TRUE(faults.empty()) << rows << "\n" << lines_of(faults);
   }
 }
 
@@ -306,7 +306,7 @@ TEST(KnitTopology, KnitsByName) {
     const fabric::Fabric fabric = fabric_of(fmt::format(
         "fabric 1\nthread t\n diameter 1\nend\nknit {}\n thread t\n courses 9\n wales 6\nend\n", name));
     const std::vector<std::string> faults = faults_of(knit_of(fabric), courses_of(fabric));
-    EXPECT_TRUE(faults.empty()) << name << "\n" << text_of(faults);
+    EXPECT_TRUE(faults.empty()) << name << "\n" << lines_of(faults);
   }
 }
 
@@ -389,7 +389,7 @@ TEST(KnitClearance, JerseysOfAllSizesAreFree) {
 TEST(KnitTopology, FaultsAreSeen) {
   const fabric::Fabric fabric = charted("KKK\nKTK\nPKM\nKKK", 6, 6);
   const std::vector<nurbs::Curve> good = courses_of(fabric);
-  ASSERT_TRUE(faults_of(knit_of(fabric), good).empty()) << text_of(faults_of(knit_of(fabric), good));
+  ASSERT_TRUE(faults_of(knit_of(fabric), good).empty()) << lines_of(faults_of(knit_of(fabric), good));
   for (std::size_t c = 0; c < good.size(); ++c) {  // a course seen from the back
     std::vector<nurbs::Curve> bad = good;
     for (Vec3& point : bad[c].points) point.z() = -point.z();

@@ -59,11 +59,11 @@ Vec3 place_at(const YarnPlan& plan, int axis, double value) {
   return nurbs::evaluate(plan.line.curve, 0.5 * (low + high));
 }
 
-struct Crossing {
+struct WovenCrossing {
   double warp_z = 0, weft_z = 0;
 };
 
-Crossing crossing_of(const YarnPlan& warp, const YarnPlan& weft) {
+WovenCrossing crossing_of(const YarnPlan& warp, const YarnPlan& weft) {
   const double x = nurbs::evaluate(weft.line.curve, 0.0).x(), y = nurbs::evaluate(warp.line.curve, 0.0).y();
   const Vec3 on_warp = place_at(warp, 0, x), on_weft = place_at(weft, 1, y);
   EXPECT_NEAR(on_warp.y(), y, 1e-12);
@@ -107,7 +107,7 @@ class Differences {
     for (int i = 1; i <= weave_.warp.count; ++i)
       for (int j = 1; j <= weave_.weft.count; ++j) {
         const YarnPlan &warp = plan(yarn(prefix, "warp", i)), &weft = plan(yarn(prefix, "weft", j));
-        const Crossing crossing = crossing_of(warp, weft);
+        const WovenCrossing crossing = crossing_of(warp, weft);
         const std::string at = warp.name + " x " + weft.name;
         expect((crossing.warp_z > crossing.weft_z) == warp_has_to_be_on_top(weave_.draft, i, j), at);
         // Apart by a small part of their thickness; sines, and ellipses that are pressed, by more, which come
@@ -123,7 +123,7 @@ class Differences {
         if (!weave_.amplitude) expect(apart > least - 1e-9 && apart < most * least, at + " do not meet");
         if (layer < layers) {
           const std::string above = "layer" + std::to_string(layer + 1) + "_";
-          const Crossing next = crossing_of(plan(yarn(above, "warp", i)), plan(yarn(above, "weft", j)));
+          const WovenCrossing next = crossing_of(plan(yarn(above, "warp", i)), plan(yarn(above, "weft", j)));
           expect(std::min(next.warp_z, next.weft_z) > std::max(crossing.warp_z, crossing.weft_z),
                  at + " and the layer above");
         }
@@ -137,8 +137,8 @@ class Differences {
       for (int i = 1; i <= weave_.warp.count; ++i)
         for (int j = 1; j <= weave_.weft.count; ++j) {
           const YarnPlan& warp = plan(yarn(below, "warp", i));
-          const Crossing under = crossing_of(warp, plan(yarn(below, "weft", j))),
-                         over = crossing_of(warp, plan(yarn(above, "weft", j)));
+          const WovenCrossing under = crossing_of(warp, plan(yarn(below, "weft", j))),
+                              over = crossing_of(warp, plan(yarn(above, "weft", j)));
           expect(under.weft_z < under.warp_z && over.warp_z < over.weft_z, warp.name);
         }
     }
@@ -154,7 +154,7 @@ class Differences {
         for (int j = 1; j <= weave_.weft.count; ++j) {
           int below = 0;
           for (int layer = 1; layer <= layers + 1; ++layer) {
-            const Crossing crossing =
+            const WovenCrossing crossing =
                 crossing_of(yarn_plan, plan(yarn("layer" + std::to_string(layer) + "_", "weft", j)));
             if (crossing.weft_z < crossing.warp_z) ++below;
           }

@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr const char* dependent = "00010000";
+constexpr const char* physically_dependent = "00010000";
 
 // The first corners of all faces, by x, then y.
 std::vector<Vec3> corners(const IgesText& file) {
@@ -41,7 +41,7 @@ void expect_near(const std::vector<Vec3>& found, const std::vector<Vec3>& due) {
 // 3 columns and 2 rows at half the size, without place 4: the second one in the second column.
 TEST(IgesArrays, RectangularCountsUpTheColumns) {
   IgesText file;
-  const int face = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = dependent});
+  const int face = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = physically_dependent});
   file.add({.type = 412, .parameters = fmt::format("{},.5,10.,20.,30.,3,2,4.,7.,0.,1,1,4", face)});
   expect_near(corners(file), {{10, 20, 30}, {10, 27, 30}, {14, 20, 30}, {18, 20, 30}, {18, 27, 30}});
   const IgesReading reading = read_iges(file.bytes());
@@ -51,7 +51,7 @@ TEST(IgesArrays, RectangularCountsUpTheColumns) {
 // Turned by a right angle: rows go towards -x, and what is copied keeps its own axes.
 TEST(IgesArrays, RectangularIsTurnedAndItsCopiesAreNot) {
   IgesText file;
-  const int face = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = dependent});
+  const int face = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = physically_dependent});
   const int figure =
       file.add({.type = 308, .parameters = fmt::format("0,1HA,1,{}", face), .status = "00000200"});
   file.add({.type = 412, .parameters = fmt::format("{},1.,0.,0.,0.,2,2,4.,7.,{:.17g},0,0", figure, pi / 2)});
@@ -66,7 +66,7 @@ TEST(IgesArrays, RectangularIsTurnedAndItsCopiesAreNot) {
 // Six places round a circle of radius 2, of which two are listed.
 TEST(IgesArrays, CircularTakesWhatIsListed) {
   IgesText file;
-  const int face = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = dependent});
+  const int face = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = physically_dependent});
   file.add({.type = 414,
             .parameters = fmt::format("{},6,1.,1.,5.,2.,{:.17g},{:.17g},2,0,1,4", face, pi / 2, pi / 3)});
   expect_near(corners(file), {{1, -1, 5}, {1, 3, 5}});
@@ -75,7 +75,7 @@ TEST(IgesArrays, CircularTakesWhatIsListed) {
 TEST(IgesArrays, BadInput) {
   const auto fails = [](const std::string& array, int type, const std::string& words) {
     IgesText file;
-    file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = dependent});
+    file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = physically_dependent});
     file.add({.type = type, .parameters = array});
     const IgesReading reading = read_iges(file.bytes());
     EXPECT_FALSE(reading.model) << array;
@@ -101,7 +101,8 @@ nurbs::Curve curve_of(const IgesText& file) {
 // The normal times the tangent tells the side: of a half circle about z that is towards its middle.
 TEST(IgesOffsets, OfAnArc) {
   IgesText file;
-  const int arc = file.add({.type = 100, .parameters = "1.,0.,0.,2.,0.,-2.,0.", .status = dependent});
+  const int arc =
+      file.add({.type = 100, .parameters = "1.,0.,0.,2.,0.,-2.,0.", .status = physically_dependent});
   file.add({.type = 130, .parameters = fmt::format("{},1,0,0,0,.5,0.,0.,0.,0.,0.,1.,0.,{:.17g}", arc, pi)});
   const nurbs::Curve curve = curve_of(file);
   EXPECT_NEAR(nurbs::arc_length(curve), 1.5 * pi, 1e-7);
@@ -112,7 +113,7 @@ TEST(IgesOffsets, OfAnArc) {
 // A line along x whose distance grows with its length from 1 to 2: a line at a slope.
 TEST(IgesOffsets, OfALineWithADistanceThatGrows) {
   IgesText file;
-  const int line = file.add({.type = 110, .parameters = "0.,0.,0.,4.,0.,0.", .status = dependent});
+  const int line = file.add({.type = 110, .parameters = "0.,0.,0.,4.,0.,0.", .status = physically_dependent});
   file.add({.type = 130, .parameters = fmt::format("{},2,0,0,1,1.,0.,2.,4.,0.,0.,1.,0.,1.", line)});
   const nurbs::Curve curve = curve_of(file);
   EXPECT_LT((nurbs::evaluate(curve, curve.first_parameter()) - Vec3(0, 1, 0)).norm(), 1e-9);
@@ -123,8 +124,9 @@ TEST(IgesOffsets, OfALineWithADistanceThatGrows) {
 // The third kind: the y of another curve, y = x, at the base's parameter 0 .. 1.
 TEST(IgesOffsets, OfALineByAFunction) {
   IgesText file;
-  const int line = file.add({.type = 110, .parameters = "0.,0.,0.,4.,0.,0.", .status = dependent});
-  const int function = file.add({.type = 110, .parameters = "0.,0.,0.,1.,3.,0.", .status = dependent});
+  const int line = file.add({.type = 110, .parameters = "0.,0.,0.,4.,0.,0.", .status = physically_dependent});
+  const int function =
+      file.add({.type = 110, .parameters = "0.,0.,0.,1.,3.,0.", .status = physically_dependent});
   file.add(
       {.type = 130, .parameters = fmt::format("{},3,{},2,2,0.,0.,0.,0.,0.,0.,1.,0.,1.", line, function)});
   EXPECT_NEAR(nurbs::arc_length(curve_of(file)), 5, 1e-9);
@@ -143,9 +145,10 @@ double area_of(const IgesText& file) {
 TEST(IgesOffsets, OfACurvedSurface) {
   for (const double side : {1.0, -1.0}) {
     IgesText file;
-    const int arc = file.add({.type = 100, .parameters = "0.,0.,0.,2.,0.,0.,2.", .status = dependent});
-    const int wall =
-        file.add({.type = 122, .parameters = fmt::format("{},2.,0.,3.", arc), .status = dependent});
+    const int arc =
+        file.add({.type = 100, .parameters = "0.,0.,0.,2.,0.,0.,2.", .status = physically_dependent});
+    const int wall = file.add(
+        {.type = 122, .parameters = fmt::format("{},2.,0.,3.", arc), .status = physically_dependent});
     const double s = side * std::sqrt(0.5);
     file.add({.type = 140, .parameters = fmt::format("{:.17g},{:.17g},0.,.5,{}", s, s, wall)});
     EXPECT_NEAR(area_of(file), (2 + 0.5 * side) * pi / 2 * 3, 1e-6) << side;
@@ -155,8 +158,9 @@ TEST(IgesOffsets, OfACurvedSurface) {
 // Of surfaces by formula: exactly such again.
 TEST(IgesOffsets, OfASphere) {
   IgesText file;
-  const int middle = file.add({.type = 116, .parameters = "1.,2.,3.,0", .status = dependent});
-  const int sphere = file.add({.type = 196, .parameters = fmt::format("{},2.", middle), .status = dependent});
+  const int middle = file.add({.type = 116, .parameters = "1.,2.,3.,0", .status = physically_dependent});
+  const int sphere =
+      file.add({.type = 196, .parameters = fmt::format("{},2.", middle), .status = physically_dependent});
   file.add({.type = 140, .parameters = fmt::format("-1.,0.,0.,.5,{}", sphere)});
   EXPECT_NEAR(area_of(file), 4 * pi * 2.5 * 2.5, 1e-6);
 }
@@ -164,15 +168,16 @@ TEST(IgesOffsets, OfASphere) {
 // 144 on the offset of a plane, bounded by its curve in space: a disc at z = 1.5.
 TEST(IgesOffsets, OfAPlaneThatIsTrimmed) {
   IgesText file;
-  const int place = file.add({.type = 116, .parameters = "0.,0.,1.,0", .status = dependent});
-  const int up = file.add({.type = 123, .parameters = "0.,0.,1.", .status = dependent});
+  const int place = file.add({.type = 116, .parameters = "0.,0.,1.,0", .status = physically_dependent});
+  const int up = file.add({.type = 123, .parameters = "0.,0.,1.", .status = physically_dependent});
   const int plane =
-      file.add({.type = 190, .parameters = fmt::format("{},{}", place, up), .status = dependent});
-  const int moved =
-      file.add({.type = 140, .parameters = fmt::format("0.,0.,1.,.5,{}", plane), .status = dependent});
-  const int circle = file.add({.type = 100, .parameters = "1.5,0.,0.,2.,0.,2.,0.", .status = dependent});
-  const int boundary =
-      file.add({.type = 142, .parameters = fmt::format("0,{},0,{},2", moved, circle), .status = dependent});
+      file.add({.type = 190, .parameters = fmt::format("{},{}", place, up), .status = physically_dependent});
+  const int moved = file.add(
+      {.type = 140, .parameters = fmt::format("0.,0.,1.,.5,{}", plane), .status = physically_dependent});
+  const int circle =
+      file.add({.type = 100, .parameters = "1.5,0.,0.,2.,0.,2.,0.", .status = physically_dependent});
+  const int boundary = file.add(
+      {.type = 142, .parameters = fmt::format("0,{},0,{},2", moved, circle), .status = physically_dependent});
   file.add({.type = 144, .parameters = fmt::format("{},1,0,{}", moved, boundary)});
   const IgesReading reading = read_iges(file.bytes());
   ASSERT_TRUE(reading.model && reading.model->parts.size() == 1) << reading.text();
@@ -186,7 +191,7 @@ TEST(IgesOffsets, OfAPlaneThatIsTrimmed) {
 TEST(IgesTrimmed, HalfASphereBetweenMeridians) {
   IgesText file;
   const auto dependent_one = [&](int type, const std::string& parameters) {
-    return file.add({.type = type, .parameters = parameters, .status = dependent});
+    return file.add({.type = type, .parameters = parameters, .status = physically_dependent});
   };
   const auto flat = [&](double u0, double v0, double u1, double v1) {
     return dependent_one(126,
@@ -219,8 +224,9 @@ TEST(IgesTrimmed, HalfASphereBetweenMeridians) {
 // A turn of so many digits is a whole one.
 TEST(IgesTrimmed, AWholeTurnOfSixDigits) {
   IgesText file;
-  const int axis = file.add({.type = 110, .parameters = "0.,0.,0.,5.,0.,0.", .status = dependent});
-  const int meridian = file.add({.type = 100, .parameters = "0.,0.,0.,5.,0.,-5.,0.", .status = dependent});
+  const int axis = file.add({.type = 110, .parameters = "0.,0.,0.,5.,0.,0.", .status = physically_dependent});
+  const int meridian =
+      file.add({.type = 100, .parameters = "0.,0.,0.,5.,0.,-5.,0.", .status = physically_dependent});
   file.add({.type = 120, .parameters = fmt::format("{},{},0.,6.28318", axis, meridian)});
   const IgesReading reading = read_iges(file.bytes());
   ASSERT_TRUE(reading.model && reading.model->parts.size() == 1) << reading.text();
@@ -231,7 +237,8 @@ TEST(IgesTrimmed, AWholeTurnOfSixDigits) {
 TEST(IgesTrimmed, CurvesThatRunAgainstEachOther) {
   for (const int turned : {0, 1, 2, 3, 5, 9, 15}) {
     IgesText file;
-    const int plane = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = dependent});
+    const int plane =
+        file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = physically_dependent});
     const std::array<std::pair<double, double>, 4> corners = {{{.1, .2}, {.7, .2}, {.7, .9}, {.1, .9}}};
     std::string chain = "4";
     for (int i = 0; i < 4; ++i) {
@@ -241,11 +248,12 @@ TEST(IgesTrimmed, CurvesThatRunAgainstEachOther) {
       chain += fmt::format(",{}", file.add({.type = 110,
                                             .parameters = fmt::format("{},{},0.,{},{},0.", from.first,
                                                                       from.second, to.first, to.second),
-                                            .status = dependent}));
+                                            .status = physically_dependent}));
     }
-    const int composite = file.add({.type = 102, .parameters = chain, .status = dependent});
-    const int boundary = file.add(
-        {.type = 142, .parameters = fmt::format("0,{},0,{},2", plane, composite), .status = dependent});
+    const int composite = file.add({.type = 102, .parameters = chain, .status = physically_dependent});
+    const int boundary = file.add({.type = 142,
+                                   .parameters = fmt::format("0,{},0,{},2", plane, composite),
+                                   .status = physically_dependent});
     file.add({.type = 144, .parameters = fmt::format("{},1,0,{}", plane, boundary)});
     const IgesReading reading = read_iges(file.bytes());
     ASSERT_TRUE(reading.model && reading.model->parts.size() == 1) << reading.text();
@@ -264,11 +272,13 @@ TEST(IgesOffsets, BadInput) {
     const IgesReading reading = read_iges(file.bytes());
     EXPECT_TRUE(reading.says(severity, words)) << words << ":\n" << reading.text();
   };
-  const IgesEntity line{.type = 110, .parameters = "0.,0.,0.,4.,0.,0.", .status = dependent};
-  const IgesEntity bent{
-      .type = 106, .form = 12, .parameters = "2,3,0.,0.,0.,1.,0.,0.,1.,1.,0.", .status = dependent};
-  const IgesEntity middle{.type = 116, .parameters = "0.,0.,0.,0", .status = dependent};
-  const IgesEntity sphere{.type = 196, .parameters = "1,2.", .status = dependent};
+  const IgesEntity line{.type = 110, .parameters = "0.,0.,0.,4.,0.,0.", .status = physically_dependent};
+  const IgesEntity bent{.type = 106,
+                        .form = 12,
+                        .parameters = "2,3,0.,0.,0.,1.,0.,0.,1.,1.,0.",
+                        .status = physically_dependent};
+  const IgesEntity middle{.type = 116, .parameters = "0.,0.,0.,0", .status = physically_dependent};
+  const IgesEntity sphere{.type = 196, .parameters = "1,2.", .status = physically_dependent};
   says({line, {.type = 130, .parameters = "1,4,0,0,0,1.,0.,0.,0.,0.,0.,1.,0.,1."}}, Severity::error,
        "no offset of kind 4");
   says({line, {.type = 130, .parameters = "1,1,0,0,0,1.,0.,0.,0.,0.,0.,0.,0.,1."}}, Severity::error,
@@ -277,7 +287,7 @@ TEST(IgesOffsets, BadInput) {
        "a pointer to an entity is missing");
   says({line, {.type = 130, .parameters = "1,1,0,0,0,1.,0.,0.,0.,0.,0.,1.,5.,9."}}, Severity::warning,
        "no parameters 5 to 9");
-  const IgesEntity joined{.type = 102, .parameters = "1,1", .status = dependent};
+  const IgesEntity joined{.type = 102, .parameters = "1,1", .status = physically_dependent};
   says({line, joined, {.type = 130, .parameters = "3,1,0,0,0,1.,0.,0.,0.,0.,0.,1.,0.,1."}}, Severity::warning,
        "all of the composite or conic is taken");
   says({line, joined, {.type = 130, .parameters = "3,2,0,0,2,1.,0.,2.,1.,0.,0.,1.,0.,1."}}, Severity::warning,

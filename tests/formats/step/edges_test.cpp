@@ -57,7 +57,7 @@ std::string occt_text(const TopoDS_Shape& shape) {
   return text.str();
 }
 
-std::optional<cad::Model> read(const std::string& text, std::vector<std::string>* said = nullptr) {
+std::optional<cad::Model> read_text(const std::string& text, std::vector<std::string>* said = nullptr) {
   Diagnostics diagnostics;
   std::optional<cad::Model> model =
       formats::step::descriptor().read_model(Source::from_memory(text, "a.stp"), diagnostics);
@@ -164,7 +164,7 @@ TEST(StepEdges, CurvesInParametersThatAreOff) {
   ASSERT_NE(uncertainty, std::string::npos);
   const std::size_t value = text.find("MEASURE(", uncertainty + 20) + 8;
   text.replace(value, text.find(')', value) - value, "5.E-02");
-  const std::optional<cad::Model> model = read(text);
+  const std::optional<cad::Model> model = read_text(text);
   ASSERT_TRUE(model && model->face_count() == 1);
   const cad::Face& found = model->parts[0].faces[0];
   const cad::Region region(found);
@@ -199,7 +199,7 @@ TEST(StepEdges, ASurfaceWithoutItsName) {
   ASSERT_NE(name, std::string::npos);
   text.erase(name + 5, 2);
   std::vector<std::string> said;
-  const std::optional<cad::Model> model = read(text, &said);
+  const std::optional<cad::Model> model = read_text(text, &said);
   ASSERT_TRUE(model && model->face_count() == 1);
   EXPECT_NEAR(cad::measures_of(model->parts[0]).area.value_or(0), pi, 1e-9);
   EXPECT_EQ(std::ranges::count_if(
@@ -223,7 +223,7 @@ TEST(StepEdges, LinesWithoutEndsAreToldAndLeftOut) {
   ASSERT_NE(set, std::string::npos);
   text.replace(set, part.size(), whole);
   std::vector<std::string> said;
-  const std::optional<cad::Model> model = read(text, &said);
+  const std::optional<cad::Model> model = read_text(text, &said);
   ASSERT_TRUE(model.has_value());
   ASSERT_EQ(model->curves.size(), 1U);
   EXPECT_LE((model->curves[0].curve.points.back() - Vec3(2, 0, 0)).norm(), 1e-12);

@@ -49,14 +49,14 @@ std::string written(const std::vector<yarn::Body>& bodies, const SurfaceOptions&
       options);
 }
 
-struct Reading {
+struct ModelReading {
   std::optional<cad::Model> model;
   std::vector<Message> messages;
 };
 
-Reading read(const std::string& bytes) {
+ModelReading read(const std::string& bytes) {
   Diagnostics diagnostics;
-  Reading reading;
+  ModelReading reading;
   reading.model = formats::step::descriptor().read_model(Source::from_memory(bytes, "a.stp"), diagnostics);
   reading.messages = diagnostics.messages();
   EXPECT_EQ(reading.model.has_value(), !diagnostics.has_errors());
@@ -64,7 +64,7 @@ Reading read(const std::string& bytes) {
 }
 
 cad::Model model_of(const std::string& bytes) {
-  Reading reading = read(bytes);
+  ModelReading reading = read(bytes);
   EXPECT_TRUE(reading.model.has_value());
   for (const Message& message : reading.messages) ADD_FAILURE() << to_string(message);
   return reading.model.value_or(cad::Model{});
@@ -199,7 +199,7 @@ TEST(StepReader, TruncatedFilesAreErrors) {
   const std::string whole = written({tests::tube("yarn", EndStyle::planar)});
   const std::size_t end = whole.rfind("END-ISO-10303-21;") + std::string_view("END-ISO-10303-21;").size();
   for (std::size_t cut = 0; cut < end; ++cut) {
-    const Reading reading = read(whole.substr(0, cut));
+    const ModelReading reading = read(whole.substr(0, cut));
     ASSERT_FALSE(reading.model.has_value()) << cut;
     ASSERT_EQ(reading.messages.size(), 1U) << cut;
     ASSERT_GT(reading.messages[0].place.line, 0) << cut;
@@ -215,7 +215,7 @@ std::string with(std::string bytes, const std::string& from, const std::string& 
 }
 
 void expect_error(const std::string& bytes, const std::string& words) {
-  const Reading reading = read(bytes);
+  const ModelReading reading = read(bytes);
   EXPECT_FALSE(reading.model.has_value()) << words;
   bool found = false;
   for (const Message& message : reading.messages) {
@@ -245,10 +245,10 @@ TEST(StepReader, WhatIsUnambiguousIsReadThrough) {
       {with(whole, "SURFACE_STYLE_USAGE(.BOTH.", "SURFACE_STYLE_USAGE($"),
        "attribute 1 of SURFACE_STYLE_USAGE is '$'"},
   };
-  const Reading before = read(whole);
+  const ModelReading before = read(whole);
   ASSERT_TRUE(before.model.has_value());
   for (const auto& [bytes, words] : faults) {
-    const Reading reading = read(bytes);
+    const ModelReading reading = read(bytes);
     ASSERT_TRUE(reading.model.has_value()) << words;
     std::size_t told = 0;
     for (const Message& message : reading.messages) {
@@ -289,7 +289,7 @@ TEST(StepReader, WhatIsLostIsTold) {
   const std::string whole = written({tests::tube("yarn", EndStyle::patch)});
   for (const char* type : {"MANIFOLD_SOLID_BREP(", "CLOSED_SHELL("}) {
     std::string bytes = with(whole, type, "NO_SUCH_" + std::string(type));
-    const Reading reading = read(bytes);
+    const ModelReading reading = read(bytes);
     EXPECT_FALSE(reading.messages.empty()) << type;
   }
 }

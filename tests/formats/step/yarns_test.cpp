@@ -15,7 +15,8 @@ namespace {
 
 using yarn::EndStyle;
 
-std::string written(const std::vector<yarn::Body>& bodies, const formats::SurfaceOptions& options = {}) {
+std::string written_yarns(const std::vector<yarn::Body>& bodies,
+                          const formats::SurfaceOptions& options = {}) {
   Result<OutputFile> output = OutputFile::in_memory();
   if (!output) return to_string(output.error());
   auto writer = formats::step::descriptor().open_bodies(*output, options);
@@ -50,7 +51,7 @@ TEST(StepYarns, SayTheirVolumes) {
   for (const EndStyle style : {EndStyle::patch, EndStyle::fan, EndStyle::planar}) {
     const std::vector<yarn::Body> bodies = {tests::wave("wave", style),
                                             tests::tube("tube", style, 2.0, {3, 4, 5})};
-    const std::string text = written(bodies);
+    const std::string text = written_yarns(bodies);
     const std::vector<double> volumes = measures(text, "VOLUME_MEASURE");
     ASSERT_EQ(volumes.size(), 3U) << text.substr(0, 300);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(volumes[i] / bodies[i].volume, 1.0, 1e-12);
@@ -66,7 +67,7 @@ TEST(StepYarns, SayTheirVolumes) {
 
 // Pappus: 4 pi^2 R r and 2 pi^2 R r^2, as near as the B-spline is to the torus.
 TEST(StepYarns, ARingHasThePappusArea) {
-  const std::string text = written({tests::ring("ring", 1.0, 5.0)});
+  const std::string text = written_yarns({tests::ring("ring", 1.0, 5.0)});
   const double square = std::numbers::pi * std::numbers::pi;
   const std::vector<double> areas = measures(text, "AREA_MEASURE"),
                             volumes = measures(text, "VOLUME_MEASURE");
@@ -77,7 +78,7 @@ TEST(StepYarns, ARingHasThePappusArea) {
 }
 
 TEST(StepYarns, AnOpenYarnHasAnAreaOnly) {
-  const std::string text = written({tests::tube("sleeve", EndStyle::none)});
+  const std::string text = written_yarns({tests::tube("sleeve", EndStyle::none)});
   EXPECT_EQ(measures(text, "AREA_MEASURE").size(), 2U) << text.substr(0, 300);
   EXPECT_TRUE(measures(text, "VOLUME_MEASURE").empty());
   EXPECT_NE(text.find("SHELL_BASED_SURFACE_MODEL('sleeve'"), std::string::npos);
@@ -92,13 +93,13 @@ TEST(StepYarns, CopiesMeasureAsTheyDoAlone) {
   copy.name = "copy";
   for (nurbs::Surface* surface : {&copy.surface, &copy.start.surface, &copy.end.surface})
     for (Vec3& p : surface->points) p = moved(p);
-  const std::string text = written({first, copy, other});
+  const std::string text = written_yarns({first, copy, other});
   const std::vector<double> volumes = measures(text, "VOLUME_MEASURE"),
                             areas = measures(text, "AREA_MEASURE");
   ASSERT_EQ(volumes.size(), 4U) << text.substr(0, 300);
   std::size_t i = 0;
   for (const yarn::Body* const body : std::initializer_list<const yarn::Body*>{&first, &copy, &other}) {
-    const std::string alone = written({*body});
+    const std::string alone = written_yarns({*body});
     EXPECT_NEAR(volumes[i] / measures(alone, "VOLUME_MEASURE").at(0), 1.0, 1e-12) << body->name;
     EXPECT_NEAR(areas[i] / measures(alone, "AREA_MEASURE").at(0), 1.0, 1e-12) << body->name;
     EXPECT_LT((centres(text).at(i) - centres(alone).at(0)).norm(), 1e-12) << body->name;
@@ -117,7 +118,7 @@ TEST(StepYarns, APlaneEndThatCrossesItselfIsRefused) {
               5 * along};
     });
   };
-  const std::string crossing = written({eight(1.0)}), round = written({eight(0.1)});
+  const std::string crossing = written_yarns({eight(1.0)}), round = written_yarns({eight(0.1)});
   EXPECT_NE(crossing.find("yarn 'eight': the outline at its start crosses itself"), std::string::npos)
       << crossing.substr(0, 300);
   EXPECT_TRUE(round.starts_with("ISO-10303-21;")) << round.substr(0, 300);

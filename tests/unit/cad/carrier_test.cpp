@@ -53,7 +53,7 @@ Profile segment(double r0, double z0, double r1, double z1) {
 }
 
 // An arc about (c, 0) in the plane of r and z.
-Profile arc(double c, double radius, double from, double to) {
+Profile profile_arc(double c, double radius, double from, double to) {
   const double half = 0.5 * (to - from), middle = 0.5 * (to + from), far = radius / std::cos(half);
   return {{{c + radius * std::cos(from), 0, radius * std::sin(from)},
            {c + far * std::cos(middle), 0, far * std::sin(middle)},
@@ -68,8 +68,8 @@ std::optional<double> between(const Surface& a, const Surface& b, double enough 
 }
 
 TEST(Carrier, OfCylindersConesSpheresAndTori) {
-  for (const Profile& profile :
-       {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
+  for (const Profile& profile : {segment(2, 0, 2, 5), segment(1, 0, 3, 4), profile_arc(0, 2, -0.7, 1.1),
+                                 profile_arc(5, 1, -0.4, 1.9)}) {
     const Surface a = turned(profile, 0, 2), b = turned(profile, -0.3, 2.2);
     const auto bound = between(a, b);
     ASSERT_TRUE(bound.has_value());
@@ -89,9 +89,9 @@ TEST(Carrier, NoneWhereTheyDiffer) {
   const std::vector<std::pair<Profile, Profile>> pairs = {
       {segment(2, 0, 2, 5), segment(2 + change, 0, 2 + change, 5)},
       {segment(1, 0, 3, 4), segment(1, 0, 3 + change, 4)},
-      {arc(0, 2, -0.7, 1.1), arc(0, 2 + change, -0.7, 1.1)},
-      {arc(5, 1, -0.4, 1.9), arc(5, 1 + change, -0.4, 1.9)},
-      {arc(5, 1, -0.4, 1.9), arc(5 + change, 1, -0.4, 1.9)}};
+      {profile_arc(0, 2, -0.7, 1.1), profile_arc(0, 2 + change, -0.7, 1.1)},
+      {profile_arc(5, 1, -0.4, 1.9), profile_arc(5, 1 + change, -0.4, 1.9)},
+      {profile_arc(5, 1, -0.4, 1.9), profile_arc(5 + change, 1, -0.4, 1.9)}};
   for (const auto& [one, other] : pairs) {
     const Surface a = turned(one, 0, 2), b = turned(other, -0.3, 2.2);
     EXPECT_FALSE(between(a, b, 0.5 * change).has_value());
@@ -107,7 +107,7 @@ TEST(Carrier, NoneOfFreeShapes) {
 }
 
 // A face on one surface with the sides of another one as its boundary, in space only.
-Subject face_of(const Surface& surface, const Surface& border) {
+Subject subject_of(const Surface& surface, const Surface& border) {
   Subject subject;
   subject.model.parts = {test::part_of("face", {surface})};
   Loop& loop = subject.model.parts[0].faces[0].loops.emplace_back();
@@ -118,18 +118,18 @@ Subject face_of(const Surface& surface, const Surface& border) {
   return subject;
 }
 
-Comparison compared(const Subject& a, const Subject& b, double tolerance) {
+Comparison compared_within(const Subject& a, const Subject& b, double tolerance) {
   CompareOptions options;
   options.tolerance = tolerance;
   return compare(a, b, options);
 }
 
 TEST(Carrier, FacesOnOneSurfaceAreEqualHoweverItsParametersRun) {
-  for (const Profile& profile :
-       {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
+  for (const Profile& profile : {segment(2, 0, 2, 5), segment(1, 0, 3, 4), profile_arc(0, 2, -0.7, 1.1),
+                                 profile_arc(5, 1, -0.4, 1.9)}) {
     const Surface border = turned(profile, 0.1, 1.9);
-    const Comparison found = compared(face_of(turned(profile, 0, 2), border),
-                                      face_of(swapped(turned(profile, -0.3, 2.2)), border), 1e-6);
+    const Comparison found = compared_within(subject_of(turned(profile, 0, 2), border),
+                                             subject_of(swapped(turned(profile, -0.3, 2.2)), border), 1e-6);
     EXPECT_TRUE(found.differences.empty());
     EXPECT_EQ(found.uncertain, 0U);
     EXPECT_LE(found.largest, 1e-6);
@@ -139,7 +139,7 @@ TEST(Carrier, FacesOnOneSurfaceAreEqualHoweverItsParametersRun) {
 TEST(Carrier, AChangedRadiusIsToldByTwoNearBounds) {
   const Surface a = turned(segment(2, 0, 2, 5), 0, 2), b = turned(segment(2.001, 0, 2.001, 5), -0.3, 2.2);
   const Surface border = turned(segment(2, 0, 2, 5), 0.1, 1.9);
-  const Comparison found = compared(face_of(a, border), face_of(b, border), 1e-6);
+  const Comparison found = compared_within(subject_of(a, border), subject_of(b, border), 1e-6);
   ASSERT_EQ(found.differences.size(), 1U);
   const Reach& reach = found.differences[0].reach;
   EXPECT_LE(reach.at_least, 0.001 + 1e-9);
@@ -150,7 +150,7 @@ TEST(Carrier, AChangedRadiusIsToldByTwoNearBounds) {
 
 TEST(Carrier, BothSidesOfOneOutlineAreTwoFaces) {
   // A sphere of two pieces, of which one or the other half belongs to the face.
-  const Profile half = arc(0, 2, -std::numbers::pi / 4, std::numbers::pi / 4);
+  const Profile half = profile_arc(0, 2, -std::numbers::pi / 4, std::numbers::pi / 4);
   const Surface zone = turned(half, 0, 2);
   const auto part = [&](double u0, double u1, double v0, double v1) {
     Subject subject;
@@ -167,8 +167,8 @@ TEST(Carrier, BothSidesOfOneOutlineAreTwoFaces) {
   // outline.
   Subject ring = part(0.1, 0.9, 0.1, 0.9), other = ring;
   ring.model.parts[0].faces[0].loops.push_back(part(0.3, 0.7, 0.3, 0.7).model.parts[0].faces[0].loops[0]);
-  EXPECT_TRUE(compared(ring, ring, 1e-9).differences.empty());
-  const Comparison found = compared(ring, other, 1e-9);
+  EXPECT_TRUE(compared_within(ring, ring, 1e-9).differences.empty());
+  const Comparison found = compared_within(ring, other, 1e-9);
   ASSERT_EQ(found.differences.size(), 1U);
   EXPECT_GT(found.differences[0].reach.at_least, 0.1);
 }

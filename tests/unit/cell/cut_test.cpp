@@ -15,10 +15,10 @@ namespace {
 using test::straight;
 using test::TubeForm;
 
-const TubeForm round{0.5, 0.5, 64, 4};
+const TubeForm round_tube{0.5, 0.5, 64, 4};
 
 // Along x.
-yarn::Body along_x(const TubeForm& form = round, const Vec3& middle = Vec3::Zero(), double length = 8) {
+yarn::Body along_x(const TubeForm& form = round_tube, const Vec3& middle = Vec3::Zero(), double length = 8) {
   return straight("a", form, middle, {1, 0, 0}, {0, 1, 0}, length);
 }
 
@@ -100,7 +100,7 @@ TEST(Cut, ATubeCutAcrossHasTwoRoundBorders) {
 
 TEST(Cut, AnObliqueCutIsAnEllipse) {
   const Vec3 way = Vec3(1, 0.5, 0).normalized();
-  const yarn::Body body = straight("a", round, Vec3::Zero(), way, {0, 0, 1}, 8);
+  const yarn::Body body = straight("a", round_tube, Vec3::Zero(), way, {0, 0, 1}, 8);
   const Box3 box(Vec3(-1, -2, -1), Vec3(1, 2, 1));
   const Cut result = cut_one(body, box);
   ASSERT_EQ(result.pieces.size(), 1U);
@@ -148,7 +148,7 @@ TEST(Cut, AYarnWiderThanTheBoxIsTwoPieces) {
 }
 
 TEST(Cut, EndsInTheFacesOfTheBoxBelongToThem) {
-  const yarn::Body body = along_x(round, Vec3::Zero(), 2);
+  const yarn::Body body = along_x(round_tube, Vec3::Zero(), 2);
   for (const double off : {0.0, 1e-16, 5e-4, -5e-4}) {
     const Box3 box(Vec3(-1 - off, -1, -1), Vec3(1 + off, 1, 1));
     const Cut result = cut_one(body, box);
@@ -163,7 +163,7 @@ TEST(Cut, EndsInTheFacesOfTheBoxBelongToThem) {
 }
 
 TEST(Cut, EndsInsideOfTheBoxAreTheYarnsOwn) {
-  const yarn::Body body = along_x(round, Vec3::Zero(), 2);
+  const yarn::Body body = along_x(round_tube, Vec3::Zero(), 2);
   const Cut result = cut_one(body, Box3(Vec3(-2, -1, -1), Vec3(0.5, 1, 1)));
   ASSERT_EQ(result.pieces.size(), 1U);
   std::multiset<int> faces;
@@ -174,7 +174,7 @@ TEST(Cut, EndsInsideOfTheBoxAreTheYarnsOwn) {
 
 TEST(Cut, AnEndAskewInAFaceIsRefused) {
   const Vec3 way = Vec3(1, 0.2, 0).normalized();
-  const yarn::Body body = straight("slanted", round, 4 * way, way, {0, 0, 1}, 8);
+  const yarn::Body body = straight("slanted", round_tube, 4 * way, way, {0, 0, 1}, 8);
   const Result<Cut> result = cut({&body, 1}, Box3(Vec3(0, -4, -1), Vec3(2, 4, 1)), 0.001);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().kind, Kind::geometry);
@@ -189,7 +189,7 @@ TEST(Cut, NoYarnInTheBox) {
 }
 
 TEST(Cut, WhatOnlyGrazesTheBoxIsLeftOut) {
-  const std::vector<yarn::Body> bodies = {along_x(), along_x(round, {0, 2, 0})};
+  const std::vector<yarn::Body> bodies = {along_x(), along_x(round_tube, {0, 2, 0})};
   const Result<Cut> result = cut(bodies, Box3(Vec3(-1, 0.4995, -1), Vec3(1, 3, 1)), 0.001);
   ASSERT_TRUE(result.ok());
   ASSERT_EQ(result->pieces.size(), 1U);

@@ -13,8 +13,8 @@ namespace {
 using test::straight;
 using test::TubeForm;
 
-constexpr double pi = std::numbers::pi;
-const TubeForm round{0.5, 0.5, 64, 4};
+using std::numbers::pi;
+const TubeForm thin_tube{0.5, 0.5, 64, 4};
 
 std::vector<double> volumes(const std::vector<yarn::Body>& bodies, const Box3& box) {
   Result<Cut> cut_up = cut(bodies, box, 0.001);
@@ -32,21 +32,21 @@ yarn::Body ring(double radius) {
 }
 
 TEST(Volumes, AcrossIsAreaTimesLength) {
-  const yarn::Body a = straight("a", round, {0, 0.7, 0}, {1, 0, 0}, {0, 1, 0}, 8);
+  const yarn::Body a = straight("a", thin_tube, {0, 0.7, 0}, {1, 0, 0}, {0, 1, 0}, 8);
   const std::vector<double> found = volumes({a}, Box3(Vec3(-1, -2, -1), Vec3(1.3, 2, 1)));
   EXPECT_NEAR(found[0], 2.3 * a.end_area, 1e-8);
 }
 
 TEST(Volumes, AskewIsTheSame) {
   const Vec3 way = Vec3(1, 0.3, 0.1).normalized();
-  const yarn::Body a = straight("a", round, Vec3::Zero(), way, {0, 1, 0}, 12);
+  const yarn::Body a = straight("a", thin_tube, Vec3::Zero(), way, {0, 1, 0}, 12);
   const std::vector<double> found = volumes({a}, Box3(Vec3(-1, -2, -2), Vec3(1.3, 2, 2)));
   EXPECT_NEAR(found[0], 2.3 / way.x() * a.end_area, 1e-8);
 }
 
 TEST(Volumes, PartsOfTheBoxAddUp) {
   const std::vector<yarn::Body> bodies = {ring(0.4),
-                                          straight("a", round, {0, 0, 0}, {1, 0.2, 1}, {0, 1, 0}, 12)};
+                                          straight("a", thin_tube, {0, 0, 0}, {1, 0.2, 1}, {0, 1, 0}, 12)};
   const Vec3 low(-3, -3, -1.5), high(3, 3, 1.5);
   const std::vector<double> whole = volumes(bodies, Box3(low, high));
   EXPECT_NEAR(whole[0], bodies[0].volume, 1e-10);
@@ -73,7 +73,7 @@ TEST(Volumes, ARingCutOnOneSide) {
 }
 
 TEST(Volumes, AnEndInsideCloses) {
-  const yarn::Body a = straight("a", round, {0, 0, 0}, {1, 0.3, 0.2}, {0, 1, 0}, 2);
+  const yarn::Body a = straight("a", thin_tube, {0, 0, 0}, {1, 0.3, 0.2}, {0, 1, 0}, 2);
   EXPECT_NEAR(volumes({a}, Box3(Vec3(-2, -2, -2), Vec3(2, 2, 2)))[0], a.volume, 1e-9);
 }
 

@@ -15,7 +15,7 @@ namespace {
 using test::straight;
 using test::TubeForm;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TubeForm round(double radius) {
   return {radius, radius, 64, 4};

@@ -14,7 +14,7 @@
 namespace selvage::contact {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Points = std::vector<Vec3>;
 
 // A yarn with this centre line; of its surface only the size matters here.

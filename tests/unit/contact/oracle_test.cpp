@@ -13,7 +13,7 @@ namespace {
 
 using test::moved;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 enum class Section { round, elliptic, lenticular };
 

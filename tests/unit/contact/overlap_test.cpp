@@ -13,7 +13,7 @@ using test::moved;
 using test::straight;
 using test::TubeForm;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Contacts check(const std::vector<yarn::Body>& bodies, int threads = 1) {
   ContactOptions options;
@@ -23,7 +23,7 @@ Contacts check(const std::vector<yarn::Body>& bodies, int threads = 1) {
   return result.ok() ? *result : Contacts{};
 }
 
-TubeForm round(double radius) {
+TubeForm round_tube(double radius) {
   return {radius, radius, 64, 4};
 }
 
@@ -49,11 +49,11 @@ void expect_overlap(const yarn::Body& a, const yarn::Body& b, double depth, cons
 }
 
 TEST(Overlaps, CrossingRoundYarns) {
-  const yarn::Body a = straight("a", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body a = straight("a", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
   for (double degrees : {90.0, 45.0, 20.0})
     for (double distance : {0.799, 0.79, 0.75, 0.6, 0.3}) {
       const double angle = degrees * pi / 180.0;
-      const yarn::Body b = straight("b", round(0.3), {0.1, 0.2, distance},
+      const yarn::Body b = straight("b", round_tube(0.3), {0.1, 0.2, distance},
                                     {std::cos(angle), std::sin(angle), 0}, {0, 0, 1}, 6.0);
       expect_overlap(a, b, 0.8 - distance,
                      (std::to_string(degrees) + " degrees at distance " + std::to_string(distance)).c_str());
@@ -61,18 +61,18 @@ TEST(Overlaps, CrossingRoundYarns) {
 }
 
 TEST(Overlaps, CrossingThroughTheMiddle) {
-  const yarn::Body a = straight("a", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body a = straight("a", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
   for (double radius : {0.5, 0.3, 0.1}) {
-    const yarn::Body b = straight("b", round(radius), Vec3::Zero(), {0, 1, 0}, {0, 0, 1}, 6.0);
+    const yarn::Body b = straight("b", round_tube(radius), Vec3::Zero(), {0, 1, 0}, {0, 0, 1}, 6.0);
     expect_overlap(a, b, 0.5 + radius, std::to_string(radius).c_str());
   }
 }
 
 TEST(Overlaps, ParallelRoundYarns) {
-  const yarn::Body a = straight("a", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body a = straight("a", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
   for (double distance : {0.799, 0.75, 0.5, 0.3}) {
     const Vec3 way = Vec3(0.0, 0.6, 0.8) * distance;
-    const yarn::Body b = straight("b", round(0.3), way + Vec3(0.7, 0, 0), {1, 0, 0}, {0, 0, 1}, 6.0);
+    const yarn::Body b = straight("b", round_tube(0.3), way + Vec3(0.7, 0, 0), {1, 0, 0}, {0, 0, 1}, 6.0);
     expect_overlap(a, b, 0.8 - distance, std::to_string(distance).c_str());
   }
 }
@@ -102,8 +102,8 @@ TEST(Overlaps, YarnsThatAreTheSame) {
 }
 
 TEST(Overlaps, AYarnInsideAnother) {
-  const yarn::Body thick = straight("thick", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
-  const yarn::Body thin = straight("thin", round(0.1), {0, 0, 0.2}, {1, 0, 0}, {0, 1, 0}, 5.0);
+  const yarn::Body thick = straight("thick", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body thin = straight("thin", round_tube(0.1), {0, 0, 0.2}, {1, 0, 0}, {0, 1, 0}, 5.0);
   expect_overlap(thick, thin, 0.4, "inside");
 }
 
@@ -128,14 +128,15 @@ TEST(Overlaps, SharpEdges) {
   const yarn::Body floor = prism("floor", square, Vec3::Zero());
   expect_overlap(floor, prism("square", square, {0.3, 0, 1.9}), 0.1, "face on face");
   expect_overlap(floor, prism("diamond", diamond, {0.3, 0.2, 1.9}), 0.1, "edge on face");
-  const yarn::Body round_one = straight("round", round(0.5), {0, 0, 1.46}, {0, 1, 0}, {1, 0, 0}, 6.0);
+  const yarn::Body round_one =
+      straight("round_tube", round_tube(0.5), {0, 0, 1.46}, {0, 1, 0}, {1, 0, 0}, 6.0);
   expect_overlap(floor, round_one, 0.04, "cylinder across a face");
   expect_overlap(prism("edge", diamond, Vec3::Zero()), round_one, 0.04, "cylinder across an edge");
 }
 
 TEST(Overlaps, EndFaces) {
-  const yarn::Body lying = straight("lying", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
-  const yarn::Body standing = straight("standing", round(0.1), {0, 0, 2.3}, {0, 0, 1}, {1, 0, 0}, 4.0);
+  const yarn::Body lying = straight("lying", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body standing = straight("standing", round_tube(0.1), {0, 0, 2.3}, {0, 0, 1}, {1, 0, 0}, 4.0);
   expect_overlap(lying, standing, 0.2, "an end in a flank");
   expect_overlap(lying, moved(lying, {5.95, 0, 0}), 0.05, "end in end");
 }
@@ -204,11 +205,11 @@ TEST(Overlaps, SeveralPlacesAreSeveralOverlaps) {
 }
 
 TEST(Overlaps, TouchingIsNoOverlap) {
-  const yarn::Body a = straight("a", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body a = straight("a", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
   // The curve of a control circle touches its own tangents at the middles of the polygon's sides: exactly
   // 0.5.
   for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)}) {
-    const yarn::Body b = straight("b", round(0.5), {0, 0, 1.0}, along, {0, 0, 1}, 6.0);
+    const yarn::Body b = straight("b", round_tube(0.5), {0, 0, 1.0}, along, {0, 0, 1}, 6.0);
     const Contacts result = check({a, b});
     for (const Contact& o : result.list) EXPECT_LT(o.depth(), 2e-6);  // as round as the curve is
     if (result.list.empty()) {
@@ -222,11 +223,11 @@ TEST(Overlaps, TouchingIsNoOverlap) {
 }
 
 TEST(Gaps, BetweenStraightYarns) {
-  const yarn::Body a = straight("a", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body a = straight("a", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
   for (double gap : {1e-4, 1e-3, 0.02, 0.3, 5.0}) {
     SCOPED_TRACE(gap);
     for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 2, 0)}) {
-      const yarn::Body b = straight("b", round(0.3), {0.1, 0, 0.8 + gap}, along, {0, 0, 1}, 6.0);
+      const yarn::Body b = straight("b", round_tube(0.3), {0.1, 0, 0.8 + gap}, along, {0, 0, 1}, 6.0);
       const Contacts result = check({a, b});
       EXPECT_TRUE(result.list.empty());
       ASSERT_TRUE(result.min_gap.has_value());
@@ -256,7 +257,7 @@ TEST(Gaps, OfAYarnWithItselfHoweverFarOneLooks) {
     EXPECT_TRUE(result.ok());
     return result.ok() ? result->list : std::vector<Contact>();
   };
-  const yarn::Body line = straight("line", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 12.0);
+  const yarn::Body line = straight("line", round_tube(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 12.0);
   for (const double reach : {1.0, 3.0, 20.0}) EXPECT_TRUE(near_itself(line, reach).empty()) << reach;
   const std::vector<Contact> across = near_itself(test::ring("ring", 2.0, 0.5), 3.5);
   ASSERT_FALSE(across.empty());
@@ -267,7 +268,7 @@ TEST(Gaps, OfAYarnWithItselfHoweverFarOneLooks) {
 
 TEST(Gaps, ARingAroundAYarn) {
   const yarn::Body outer = test::ring("ring", 2.0, 0.5);
-  const yarn::Body inner = straight("axis", round(0.8), Vec3::Zero(), {0, 0, 1}, {1, 0, 0}, 4.0);
+  const yarn::Body inner = straight("axis", round_tube(0.8), Vec3::Zero(), {0, 0, 1}, {1, 0, 0}, 4.0);
   const Contacts result = check({outer, inner});
   EXPECT_TRUE(result.list.empty());
   EXPECT_NEAR(result.min_gap.value_or(-1.0), 0.7, 0.007);

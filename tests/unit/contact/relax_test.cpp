@@ -22,7 +22,7 @@ namespace {
 using test::straight;
 using test::TubeForm;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // The outline of the section at v as a fine polygon.
 std::vector<Vec3> outline(const yarn::Body& body, double v, int points = 360) {

@@ -11,7 +11,7 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Thread cotton() {
   Thread thread;

@@ -43,13 +43,13 @@ Knit charted(std::vector<std::string> rows, double loop) {
   return knit;
 }
 
-struct Built {
+struct BuiltKnit {
   std::vector<YarnPlan> plans;
   Diagnostics diagnostics;
 };
 
-Built built(const Fabric& fabric, bool as_published = false) {
-  Built all;
+BuiltKnit built(const Fabric& fabric, bool as_published = false) {
+  BuiltKnit all;
   BuildOptions options;
   options.as_published = as_published;
   const Result<std::unique_ptr<Construction>> made =
@@ -67,8 +67,8 @@ Built built(const Fabric& fabric, bool as_published = false) {
   return all;
 }
 
-std::string error_of(const Fabric& fabric) {
-  const Built all = built(fabric);
+std::string first_error_of(const Fabric& fabric) {
+  const BuiltKnit all = built(fabric);
   return all.diagnostics.first_error() != nullptr ? all.diagnostics.first_error()->text : "";
 }
 
@@ -85,7 +85,7 @@ double lowest(const YarnPlan& plan, double from, double to) {
 
 TEST(KnitDensity, JerseyHasTheDensitiesAndTheLoopThatItIsGiven) {
   for (const double loop : {2.8, 3.1, 3.6}) {
-    const Built all = built(fabric_of(jersey(loop)));
+    const BuiltKnit all = built(fabric_of(jersey(loop)));
     ASSERT_EQ(all.plans.size(), 8U) << loop;
     const YarnPlan &low = all.plans[2], &high = all.plans[6];
     EXPECT_NEAR(nurbs::arc_length(low.line.curve) / 10, loop, 1e-3 * loop);
@@ -103,7 +103,7 @@ TEST(KnitDensity, TheLengthIsMetBeforeLoopsAreMovedApart) {
                                             nurbs::Parameterization::centripetal}) {
     Knit knit = jersey(2.8);
     knit.method = how;
-    const Built all = built(fabric_of(knit), true);
+    const BuiltKnit all = built(fabric_of(knit), true);
     ASSERT_EQ(all.plans.size(), 8U);
     EXPECT_NEAR(nurbs::arc_length(all.plans[3].line.curve) / 10, 2.8, 1e-6);
   }
@@ -123,8 +123,8 @@ TEST(KnitDensity, EveryChartHasTheLengthThatItIsGiven) {
     Knit large = knit;
     large.courses = 16;
     large.wales = 24;
-    const Built all = built(fabric_of(large, 8));
-    ASSERT_EQ(all.plans.size(), 16U) << error_of(fabric_of(large, 8));
+    const BuiltKnit all = built(fabric_of(large, 8));
+    ASSERT_EQ(all.plans.size(), 16U) << first_error_of(fabric_of(large, 8));
     double length = 0;
     for (std::size_t i = 4; i < 12; ++i) length += nurbs::arc_length(all.plans[i].line.curve);
     EXPECT_NEAR(length / (8 * 24 * stitches), *large.loop, 0.01 * *large.loop);
@@ -134,7 +134,7 @@ TEST(KnitDensity, EveryChartHasTheLengthThatItIsGiven) {
 TEST(KnitDensity, YarnsOfAGivenDensityStayApart) {
   for (const double tex : {5.0, 12.0, 20.0}) {
     const Fabric fabric = fabric_of(jersey(2.8), tex);
-    const Built all = built(fabric);
+    const BuiltKnit all = built(fabric);
     const double diameter = 2 * std::sqrt(tex / (1000 * std::acos(-1.0) * 1.52 * 0.6));
     double nearest = 1e9;
     const auto sampled = [](const YarnPlan& plan) {
@@ -154,9 +154,9 @@ TEST(KnitDensity, YarnsOfAGivenDensityStayApart) {
 }
 
 TEST(KnitDensity, RefusesLoopsThatCannotBe) {
-  const std::string too_short = error_of(fabric_of(jersey(2.2)));
+  const std::string too_short = first_error_of(fabric_of(jersey(2.2)));
   EXPECT_NE(too_short.find("too short"), std::string::npos) << too_short;
-  const std::string too_long = error_of(fabric_of(jersey(6)));
+  const std::string too_long = first_error_of(fabric_of(jersey(6)));
   EXPECT_NE(too_long.find("too long"), std::string::npos) << too_long;
   // The remedies work.
   for (const std::string& text : {too_short, too_long}) {
@@ -181,28 +181,28 @@ TEST(KnitDensity, RefusesLoopsThatCannotBe) {
 TEST(KnitDensity, YarnsThatAreTooThickAreRefusedWithWhatFits) {
   Knit knit = jersey(3.2);
   Fabric fabric = fabric_of(knit, 50);
-  const std::string text = error_of(fabric);
+  const std::string text = first_error_of(fabric);
   double thick = 0;
   ASSERT_EQ(std::sscanf(text.c_str() + text.find("a yarn of", text.find(':')), "a yarn of %lf", &thick), 1)
       << text;
   fabric.threads.front().diameter = thick;
-  EXPECT_EQ(error_of(fabric), "");
+  EXPECT_EQ(first_error_of(fabric), "");
 }
 
 TEST(KnitDensity, PitchesThatNoLoopHasAreRefused) {
   Knit knit = jersey(3);
   knit.loop.reset();
   knit.wale_pitch = 0.33;
-  EXPECT_NE(error_of(fabric_of(knit)).find("wale pitch of 0.33"), std::string::npos);
+  EXPECT_NE(first_error_of(fabric_of(knit)).find("wale pitch of 0.33"), std::string::npos);
   knit.wale_pitch = 0.8;
   knit.course_pitch = 0.16;
-  EXPECT_NE(error_of(fabric_of(knit)).find("course pitch of 0.16"), std::string::npos);
+  EXPECT_NE(first_error_of(fabric_of(knit)).find("course pitch of 0.16"), std::string::npos);
 }
 
 TEST(KnitDensity, AClothFarFromMundensConstantsIsToldSo) {
   EXPECT_TRUE(built(fabric_of(jersey(2.8))).diagnostics.messages().empty());
   Knit open = jersey(4);
-  const Built all = built(fabric_of(open, 8));
+  const BuiltKnit all = built(fabric_of(open, 8));
   ASSERT_EQ(all.diagnostics.messages().size(), 1U);
   EXPECT_NE(all.diagnostics.messages().front().text.find("7.2 courses and 5.2 wales"), std::string::npos)
       << all.diagnostics.messages().front().text;

@@ -10,14 +10,14 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr double r = 0.09;  // of the test's thread
+constexpr double thread_radius = 0.09;  // of the test's thread
 
 Fabric knitted(Knit knit) {
   Fabric fabric;
   fabric.file = "test.txt";
   Thread thread;
   thread.name = "t";
-  thread.diameter = 2 * r;
+  thread.diameter = 2 * thread_radius;
   fabric.threads = {thread};
   knit.place = {5, 1};
   knit.threads = {"t"};
@@ -67,7 +67,7 @@ TEST(Knit, JerseyHasThePublishedNinePoints) {
   ASSERT_EQ(plan.points.size(), 5U * 8U + 1U);
   for (std::size_t wale = 0; wale < 5; ++wale)
     for (std::size_t i = 0; i < 9; ++i) {
-      const Vec3 at = r * (published[i] + Vec3(8.0 * static_cast<double>(wale) + 4, 7, 0));
+      const Vec3 at = thread_radius * (published[i] + Vec3(8.0 * static_cast<double>(wale) + 4, 7, 0));
       EXPECT_LT((plan.points[8 * wale + i] - at).norm(), 1e-15) << wale << " " << i;
     }
 }
@@ -96,9 +96,11 @@ TEST(Knit, EveryLoopOfAJerseyHasTheLengthOfThePeriodicOne) {
     const YarnPlan plan = plan_of(knitted(jersey(1, wales, methods[m])), 0);
     const std::vector<double>& t = plan.line.parameters;
     const double inner = nurbs::arc_length(plan.line.curve, t[8 * 15], t[8 * 16]);
-    EXPECT_NEAR(inner / r, published[m], 0.01);
+    EXPECT_NEAR(inner / thread_radius, published[m], 0.01);
     for (std::size_t wale = 0; wale < wales; ++wale)
-      EXPECT_NEAR(nurbs::arc_length(plan.line.curve, t[8 * wale], t[8 * wale + 8]), inner, 1e-9 * r) << wale;
+      EXPECT_NEAR(nurbs::arc_length(plan.line.curve, t[8 * wale], t[8 * wale + 8]), inner,
+                  1e-9 * thread_radius)
+          << wale;
   }
 }
 
@@ -109,10 +111,10 @@ TEST(Knit, LoopsHaveThePublishedSize) {
   const std::vector<double>& t = plan.line.parameters;
   for (int i = 0; i <= 2000; ++i)
     box.extend(nurbs::evaluate(plan.line.curve, t[16] + (t[24] - t[16]) * i / 2000));
-  EXPECT_NEAR(box.sizes().x(), 8 * r, 1e-12);
-  EXPECT_NEAR(box.sizes().y() + 2 * r, 15 * r, 1e-6 * r);
-  EXPECT_NEAR(box.sizes().z() + 2 * r, 5 * r, 1e-6 * r);
-  EXPECT_NEAR(next.points[0].y() - plan.points[0].y(), 7 * r, 1e-15);
+  EXPECT_NEAR(box.sizes().x(), 8 * thread_radius, 1e-12);
+  EXPECT_NEAR(box.sizes().y() + 2 * thread_radius, 15 * thread_radius, 1e-6 * thread_radius);
+  EXPECT_NEAR(box.sizes().z() + 2 * thread_radius, 5 * thread_radius, 1e-6 * thread_radius);
+  EXPECT_NEAR(next.points[0].y() - plan.points[0].y(), 7 * thread_radius, 1e-15);
 }
 
 TEST(Knit, CoursesEndInPlanes) {
@@ -127,7 +129,7 @@ TEST(Knit, CoursesEndInPlanes) {
       const nurbs::Surface& surface = body->surface;
       for (int u = 0; u < surface.count_u; ++u) {
         EXPECT_NEAR(surface.point(u, 0).x(), 0, 1e-14);
-        EXPECT_NEAR(surface.point(u, surface.count_v - 1).x(), knit.wales * 8 * r, 1e-13);
+        EXPECT_NEAR(surface.point(u, surface.count_v - 1).x(), knit.wales * 8 * thread_radius, 1e-13);
       }
     }
   }
@@ -143,8 +145,8 @@ TEST(Knit, RepeatsAreTheSameToTheLastBit) {
   for (std::size_t i = 0; i < first.points.size(); ++i) {
     EXPECT_EQ(first.points[i].x(), second.points[i].x());
     EXPECT_EQ(first.points[i].z(), second.points[i].z());
-    EXPECT_NEAR(second.points[i].y() - first.points[i].y(), 28 * r, 1e-14);
-    EXPECT_NEAR(first.points[i].y() - base.points[i].y(), 28 * r, 1e-14);
+    EXPECT_NEAR(second.points[i].y() - first.points[i].y(), 28 * thread_radius, 1e-14);
+    EXPECT_NEAR(first.points[i].y() - base.points[i].y(), 28 * thread_radius, 1e-14);
   }
   // In units in which the data are whole numbers the one rounding is exact: nothing may differ at all.
   Fabric whole = fabric;
@@ -167,14 +169,14 @@ TEST(Knit, LoopsThatAreMovedApartRepeatToTheLastBit) {
   for (std::size_t i = 0; i < low.points.size(); ++i) {
     EXPECT_EQ(low.points[i].x(), high.points[i].x());
     EXPECT_EQ(low.points[i].z(), high.points[i].z());
-    EXPECT_NEAR(high.points[i].y() - low.points[i].y(), 980 * 7 * r, 1e-12);
+    EXPECT_NEAR(high.points[i].y() - low.points[i].y(), 980 * 7 * thread_radius, 1e-12);
     if (i < 120) {
       EXPECT_EQ(low.points[i], small.points[i]);
     }
     if (i < 24 || i + 32 > low.points.size()) continue;
     EXPECT_EQ(low.points[i].z(), low.points[i + 8].z());
     EXPECT_EQ(low.points[i].y(), low.points[i + 8].y());
-    EXPECT_NEAR(low.points[i + 8].x() - low.points[i].x(), 8 * r, 1e-12);
+    EXPECT_NEAR(low.points[i + 8].x() - low.points[i].x(), 8 * thread_radius, 1e-12);
   }
 }
 
@@ -184,7 +186,7 @@ TEST(Knit, LoopsThatAreMovedApartStayLoops) {
     const YarnPlan raw = plan_of(knitted(jersey(30, 30, method)), 15);
     const YarnPlan moved = plan_of(knitted(jersey(30, 30, method)), 15, false);
     for (std::size_t i = 0; i < raw.points.size(); ++i)
-      EXPECT_LT((moved.points[i] - raw.points[i]).norm(), 0.9 * r);
+      EXPECT_LT((moved.points[i] - raw.points[i]).norm(), 0.9 * thread_radius);
     EXPECT_EQ(moved.points.front().x(), raw.points.front().x());
     EXPECT_EQ(moved.points.back().x(), raw.points.back().x());
     EXPECT_NEAR(nurbs::arc_length(moved.line.curve) / nurbs::arc_length(raw.line.curve), 1, 0.04);
@@ -199,7 +201,7 @@ TEST(Knit, SmallClothsStaySymmetric) {
     const double both = points.front().x() + points.back().x();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3& other = points[points.size() - 1 - i];
-      EXPECT_LT((points[i] - Vec3(both - other.x(), other.y(), other.z())).norm(), 1e-9 * r) << i;
+      EXPECT_LT((points[i] - Vec3(both - other.x(), other.y(), other.z())).norm(), 1e-9 * thread_radius) << i;
     }
   }
 }
@@ -243,13 +245,13 @@ TEST(Knit, ACellIsFilledByAClothThatGoesOnBeyondIt) {
     ASSERT_TRUE(plan.ok());
     low = std::min(low, plan->points.front().y());
     high = std::max(high, plan->points.front().y());
-    EXPECT_LE(plan->points.front().x(), -8 * r);
-    EXPECT_GE(plan->points.back().x(), 5 * 8 * r);
+    EXPECT_LE(plan->points.front().x(), -8 * thread_radius);
+    EXPECT_GE(plan->points.back().x(), 5 * 8 * thread_radius);
     if (plan->name == "course_1") lower = plan;
     if (plan->name == "course_3") upper = plan;
   }
-  EXPECT_LE(low, -2 * 7 * r);
-  EXPECT_GE(high, 5 * 7 * r);
+  EXPECT_LE(low, -2 * 7 * thread_radius);
+  EXPECT_GE(high, 5 * 7 * thread_radius);
   ASSERT_TRUE(lower.ok() && upper.ok());
   const auto at = [](const YarnPlan& plan, double x) {  // where the course crosses a plane between wales
     double from = 0, to = 1;
@@ -260,10 +262,10 @@ TEST(Knit, ACellIsFilledByAClothThatGoesOnBeyondIt) {
     return nurbs::evaluate_jet(plan.line.curve, from);
   };
   // Periodic along a course (two wales), and from course to course (two courses).
-  const nurbs::CurveJet left = at(*lower, 0), right = at(*lower, 32 * r), over = at(*upper, 0);
-  EXPECT_LT((right.position - left.position - Vec3(32 * r, 0, 0)).norm(), 1e-13);
+  const nurbs::CurveJet left = at(*lower, 0), right = at(*lower, 32 * thread_radius), over = at(*upper, 0);
+  EXPECT_LT((right.position - left.position - Vec3(32 * thread_radius, 0, 0)).norm(), 1e-13);
   EXPECT_LT((right.d1.normalized() - left.d1.normalized()).norm(), 1e-12);
-  EXPECT_LT((over.position - left.position - Vec3(0, 14 * r, 0)).norm(), 1e-13);
+  EXPECT_LT((over.position - left.position - Vec3(0, 14 * thread_radius, 0)).norm(), 1e-13);
 }
 
 std::optional<Message> refusal(const Knit& knit) {

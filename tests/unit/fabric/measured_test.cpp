@@ -17,7 +17,7 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 MeasuredYarn line_of(const std::vector<Vec3>& points) {
   MeasuredYarn measured;

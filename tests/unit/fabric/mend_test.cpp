@@ -15,7 +15,7 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr auto uniform = nurbs::Parameterization::uniform;
+constexpr auto uniform_parameters = nurbs::Parameterization::uniform;
 
 nurbs::Curve through(const std::vector<Vec3>& points, nurbs::Parameterization how) {
   const std::vector<double> t = nurbs::parameters(points, how);
@@ -28,14 +28,14 @@ MendLine line_through(const std::vector<Vec3>& points, int first) {
   MendLine line;
   line.points = points;
   for (std::size_t i = 0; i < points.size(); ++i) line.classes.push_back(first + static_cast<int>(i));
-  line.curve = [](const std::vector<Vec3>& p) { return through(p, uniform); };
+  line.curve = [](const std::vector<Vec3>& p) { return through(p, uniform_parameters); };
   line.shares = [](const std::vector<Vec3>& p) {
-    return interpolation_shares(nurbs::parameters(p, uniform));
+    return interpolation_shares(nurbs::parameters(p, uniform_parameters));
   };
   return line;
 }
 
-std::vector<Vec3> straight(const Vec3& from, const Vec3& to, int count) {
+std::vector<Vec3> straight_points(const Vec3& from, const Vec3& to, int count) {
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) points.emplace_back(from + (to - from) * i / (count - 1));
   return points;
@@ -68,8 +68,8 @@ double missing_before(MendProblem problem) {
 
 TEST(Mend, TwoCrossingLinesPartByHalfOfTheLackEach) {
   MendProblem problem;
-  problem.lines = {line_through(straight({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
-                   line_through(straight({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
+  problem.lines = {line_through(straight_points({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
+                   line_through(straight_points({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
   problem.freedom.assign(18, Vec3::Ones());
   const Mending mending = mend(problem);
   EXPECT_TRUE(mending.is_solved());
@@ -86,8 +86,8 @@ TEST(Mend, TwoCrossingLinesPartByHalfOfTheLackEach) {
 
 TEST(Mend, WhatIsApartStaysToTheLastBit) {
   MendProblem problem;
-  problem.lines = {line_through(straight({-10, 0, 1.01}, {10, 0, 1.01}, 5), 0),
-                   line_through(straight({0, -10, -1.01}, {0, 10, -1.01}, 5), 5)};
+  problem.lines = {line_through(straight_points({-10, 0, 1.01}, {10, 0, 1.01}, 5), 0),
+                   line_through(straight_points({0, -10, -1.01}, {0, 10, -1.01}, 5), 5)};
   problem.freedom.assign(10, Vec3::Ones());
   const Mending mending = mend(problem);
   EXPECT_TRUE(mending.is_solved());
@@ -97,8 +97,8 @@ TEST(Mend, WhatIsApartStaysToTheLastBit) {
 
 TEST(Mend, PointsAndCoordinatesThatAreHeldStay) {
   MendProblem problem;
-  problem.lines = {line_through(straight({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
-                   line_through(straight({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
+  problem.lines = {line_through(straight_points({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
+                   line_through(straight_points({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
   problem.lines[0].classes.assign(9, -1);
   problem.freedom.assign(18, Vec3(1, 0, 1));
   const Mending mending = mend(problem);
@@ -110,8 +110,8 @@ TEST(Mend, PointsAndCoordinatesThatAreHeldStay) {
 
 TEST(Mend, WhatCannotMoveIsReportedWithWhatIsMissing) {
   MendProblem problem;
-  problem.lines = {line_through(straight({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
-                   line_through(straight({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
+  problem.lines = {line_through(straight_points({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
+                   line_through(straight_points({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
   for (MendLine& line : problem.lines) line.classes.assign(9, -1);
   const Mending mending = mend(problem);
   EXPECT_FALSE(mending.is_solved());
@@ -133,7 +133,7 @@ TEST(Mend, ALineIsPartedFromItself) {
   EXPECT_NEAR(missing_before(problem), 0.4, 0.05);
   EXPECT_TRUE(mending.is_solved());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] += mending.moves[i];
-  const nurbs::Curve curve = through(points, uniform);
+  const nurbs::Curve curve = through(points, uniform_parameters);
   double least = 1e9;
   for (int i = 0; i <= 2000; ++i)
     for (int j = i + 500; j <= 2000; ++j)  // half a turn away
@@ -193,8 +193,8 @@ TEST(Mend, TouchesAreNearestPlaces) {
   }
   MendProblem problem;
   problem.lines = {line_through(first, 0), line_through(second, 17)};
-  const std::vector<CubicPath> paths = {CubicPath(through(first, uniform)),
-                                        CubicPath(through(second, uniform))};
+  const std::vector<CubicPath> paths = {CubicPath(through(first, uniform_parameters)),
+                                        CubicPath(through(second, uniform_parameters))};
   const std::vector<Touch> touches = TouchFinder(problem, paths).find(paths, 1.5);
   ASSERT_FALSE(touches.empty());
   double least = 1e9;
@@ -213,14 +213,14 @@ TEST(Mend, TouchesAreNearestPlaces) {
 
 // The periodic cubic through points and what follows them a period on.
 nurbs::Curve periodic_through(const std::vector<Vec3>& points, const Vec3& period) {
-  const std::vector<double> t = nurbs::parameters(points, uniform);
+  const std::vector<double> t = nurbs::parameters(points, uniform_parameters);
   // Long before and long after, so that the ends do not count.
   constexpr int copies = 6;
   std::vector<Vec3> all;
   for (int turn = -copies; turn <= copies; ++turn)
     for (std::size_t i = 0; i + 1 < points.size(); ++i) all.emplace_back(points[i] + turn * period);
   all.emplace_back(points.front() + (copies + 1) * period);
-  return through(all, uniform);
+  return through(all, uniform_parameters);
 }
 
 std::vector<Vec3> wave_points() {
@@ -234,7 +234,7 @@ const Vec3 wave_period(8, 0, 0);
 TEST(Mend, AKnitCourseGoesOnAsItsCopies) {
   const std::vector<Vec3> points = wave_points();
   const nurbs::Curve endless = periodic_through(points, wave_period);
-  const CubicPath path(periodic_course(points, wave_period, uniform), wave_period);
+  const CubicPath path(periodic_course(points, wave_period, uniform_parameters), wave_period);
   ASSERT_TRUE(path.is_periodic());
   ASSERT_EQ(path.spans(), 8U);
   constexpr int spans = 8 * 13;  // of the endless curve; the path's first one is its 48th
@@ -246,7 +246,8 @@ TEST(Mend, AKnitCourseGoesOnAsItsCopies) {
   // Of a course that is cut out of it, ends and all.
   std::vector<Vec3> cut = points;
   for (std::size_t i = 1; i < points.size(); ++i) cut.emplace_back(points[i] + wave_period);
-  for (const auto how : {uniform, nurbs::Parameterization::chord, nurbs::Parameterization::centripetal}) {
+  for (const auto how :
+       {uniform_parameters, nurbs::Parameterization::chord, nurbs::Parameterization::centripetal}) {
     const nurbs::Curve line = course_line(cut, how, {8, wave_period}).curve;
     const CubicPath whole(periodic_course(points, wave_period, how), wave_period), part(line);
     ASSERT_EQ(part.spans(), 16U);
@@ -259,10 +260,11 @@ TEST(Mend, PeriodicSharesAreTheDerivativesOfTheControlPoints) {
   const std::vector<Vec3> points = wave_points();
   const auto control = [](std::vector<Vec3> p) {
     p.back() = p.front() + wave_period;
-    return periodic_course(p, wave_period, uniform).points;
+    return periodic_course(p, wave_period, uniform_parameters).points;
   };
   const std::vector<Vec3> base = control(points);
-  const std::vector<std::vector<Share>> shares = periodic_shares(nurbs::parameters(points, uniform));
+  const std::vector<std::vector<Share>> shares =
+      periodic_shares(nurbs::parameters(points, uniform_parameters));
   ASSERT_EQ(shares.size(), base.size());
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     std::vector<Vec3> moved = points;
@@ -280,11 +282,15 @@ TEST(Mend, PeriodicSharesAreTheDerivativesOfTheControlPoints) {
 // An endless line over the copies of an endless line across it: one repeat is looked at, all of it is parted.
 TEST(Mend, CopiesAreParted) {
   const auto across = [](const Vec3& from, const Vec3& period, int first) {
-    MendLine line = line_through(straight(from, from + period, 9), first);
+    MendLine line = line_through(straight_points(from, from + period, 9), first);
     line.classes.back() = first;
     line.period = period;
-    line.curve = [period](const std::vector<Vec3>& p) { return periodic_course(p, period, uniform); };
-    line.shares = [](const std::vector<Vec3>& p) { return periodic_shares(nurbs::parameters(p, uniform)); };
+    line.curve = [period](const std::vector<Vec3>& p) {
+      return periodic_course(p, period, uniform_parameters);
+    };
+    line.shares = [](const std::vector<Vec3>& p) {
+      return periodic_shares(nurbs::parameters(p, uniform_parameters));
+    };
     return line;
   };
   MendProblem problem;
@@ -312,7 +318,7 @@ TEST(Mend, CopiesAreParted) {
 // A line between copies of itself that move like it has no room: that is told, and how much is missing.
 TEST(Mend, CopiesThatMoveAlikeStayAsNearAsTheyAre) {
   MendProblem problem;
-  problem.lines = {line_through(straight({-10, 0, 0}, {10, 0, 0}, 9), 0)};
+  problem.lines = {line_through(straight_points({-10, 0, 0}, {10, 0, 0}, 9), 0)};
   problem.freedom.assign(9, Vec3::Ones());
   problem.repeat = {0, 0, 1.7};
   const Mending mending = mend(problem);
@@ -343,7 +349,7 @@ TEST(Mend, APeriodicLineRelaxesToTheElastica) {
         return points;
       };
       const auto line_of = [&](const std::vector<Vec3>& p) {
-        return periodic_course(p, {period, 0, 0}, uniform);
+        return periodic_course(p, {period, 0, 0}, uniform_parameters);
       };
       double low = 0, high = 4 * period;
       while (high - low > 1e-13 * period)
@@ -356,7 +362,7 @@ TEST(Mend, APeriodicLineRelaxesToTheElastica) {
       line.keeps_length = true;
       line.curve = line_of;
       line.shares = [](const std::vector<Vec3>& p) {
-        return periodic_shares(nurbs::parameters(p, uniform), least_relaxed_share);
+        return periodic_shares(nurbs::parameters(p, uniform_parameters), least_relaxed_share);
       };
       problem.lines = {line};
       problem.freedom.assign(static_cast<std::size_t>(count), Vec3(1, 1, 0));

@@ -15,13 +15,13 @@
 namespace selvage::fabric {
 namespace {
 
-struct Built {
+struct BuiltPiece {
   std::optional<PieceShape> shape;
   Diagnostics diagnostics;
 };
 
-Built build(const std::string& body, double tolerance = 0) {
-  Built built;
+BuiltPiece build(const std::string& body, double tolerance = 0) {
+  BuiltPiece built;
   Diagnostics reading;
   const std::optional<Fabric> fabric = formats::txt::descriptor().read_fabric(
       Source::from_memory("fabric 1\nunits cm\npiece p\n" + body + "end\n", "p.txt"), reading);
@@ -32,7 +32,7 @@ Built build(const std::string& body, double tolerance = 0) {
 
 // The one error of a piece, as the user sees it.
 std::string refusal(const std::string& body) {
-  const Built built = build(body);
+  const BuiltPiece built = build(body);
   EXPECT_FALSE(built.shape);
   EXPECT_EQ(built.diagnostics.error_count(), 1);
   return built.diagnostics.has_errors() ? to_string(*built.diagnostics.first_error()) : "";
@@ -41,7 +41,7 @@ std::string refusal(const std::string& body) {
 TEST(Piece, SquareInEitherDirection) {
   for (const char* body : {"line a 0 0 2 0\nline b 2 0 2 3\nline c 2 3 0 3\nline d 0 3 0 0\n",
                            "line d 0 0 0 3\nline c 0 3 2 3\nline b 2 3 2 0\nline a 2 0 0 0\n"}) {
-    const Built built = build(body);
+    const BuiltPiece built = build(body);
     ASSERT_TRUE(built.shape);
     const PieceShape& shape = *built.shape;
     EXPECT_DOUBLE_EQ(shape.area, 6);
@@ -60,7 +60,7 @@ TEST(Piece, SquareInEitherDirection) {
 
 // A parabola over its chord encloses two thirds of the box; its length has a closed form.
 TEST(Piece, ParabolaSegment) {
-  const Built built = build("curve arc C\n0 0\n1 1\n2 0\nend\nline chord 2 0 0 0\n");
+  const BuiltPiece built = build("curve arc C\n0 0\n1 1\n2 0\nend\nline chord 2 0 0 0\n");
   ASSERT_TRUE(built.shape);
   EXPECT_TRUE(built.diagnostics.messages().empty());
   EXPECT_NEAR(built.shape->area, 4.0 / 3, 1e-14);
@@ -72,7 +72,7 @@ TEST(Piece, ParabolaSegment) {
 
 TEST(Piece, ErrorTable) {
   // Four inner points, three of them in line: the cubic cannot meet them all.
-  const Built built = build("curve c by uniform\n0 0\n1 1\n2 1\n3 1\n4 2\n5 0\nend\nline l 5 0 0 0\n");
+  const BuiltPiece built = build("curve c by uniform\n0 0\n1 1\n2 1\n3 1\n4 2\n5 0\nend\nline l 5 0 0 0\n");
   ASSERT_TRUE(built.shape);
   for (const PieceEdge& edge : built.shape->edges) {
     if (!edge.fit) continue;
@@ -95,20 +95,20 @@ TEST(Piece, ErrorTable) {
 }
 
 TEST(Piece, WordThatSaysOtherwiseIsAWarningAtItsLine) {
-  const Built built = build("curve arc S\n0 0\n1 1\n2 0\nend\nline chord 2 0 0 0\n");
+  const BuiltPiece built = build("curve arc S\n0 0\n1 1\n2 0\nend\nline chord 2 0 0 0\n");
   ASSERT_TRUE(built.shape);
   ASSERT_EQ(built.diagnostics.messages().size(), 1U);
   EXPECT_EQ(to_string(built.diagnostics.messages()[0]),
             "p.txt:4:1: warning: curve 'arc' is called S, but turns one way only, as a C does, and so do "
             "its points");
-  const Built straight = build("curve arc C\n0 0\n1 0\n2 0\nend\nline b 2 0 2 2\nline c 2 2 0 0\n");
+  const BuiltPiece straight = build("curve arc C\n0 0\n1 0\n2 0\nend\nline b 2 0 2 2\nline c 2 2 0 0\n");
   ASSERT_TRUE(straight.shape);
   ASSERT_EQ(straight.diagnostics.messages().size(), 1U);
   EXPECT_NE(straight.diagnostics.messages()[0].text.find("is straight"), std::string::npos);
 }
 
 TEST(Piece, CurveThatDoublesBackIsTold) {
-  const Built built = build(
+  const BuiltPiece built = build(
       "curve a\n0 0\n1 0.1\n2 0.4\n20 12\nend\nline b 20 12 25 0\nline c 25 0 25 -9\n"
       "line d 25 -9 0 -9\nline e 0 -9 0 0\n");
   ASSERT_TRUE(built.shape);
@@ -121,7 +121,7 @@ TEST(Piece, CurveThatDoublesBackIsTold) {
   // Another way to place the points holds it, and is named; so it does.
   const std::string armhole =
       "\n21.5 70.4\n20.2 64\n20.6 57.5\n26 49\nend\nline b 26 49 50 49\nline c 50 49 21.5 70.4\n";
-  const Built uniform = build("curve a C" + armhole);
+  const BuiltPiece uniform = build("curve a C" + armhole);
   ASSERT_EQ(uniform.diagnostics.messages().size(), 1U);
   EXPECT_EQ(uniform.diagnostics.messages()[0].text,
             "curve 'a' is called C, but turns both ways, as an S does; 'by chord' does not");
@@ -131,7 +131,7 @@ TEST(Piece, CurveThatDoublesBackIsTold) {
 // What meets these best runs to and fro far outside of them: without a word that is not taken.
 TEST(Piece, ZigzagsAreNotMetAtAnyPrice) {
   const std::string rows = "0 0\n1 1\n0 2\n1 3\n0 4\n1 5\n0 6\nend\nline b 0 6 -3 0\nline c -3 0 0 0\n";
-  const Built built = build("curve a\n" + rows), met = build("curve a by distance\n" + rows);
+  const BuiltPiece built = build("curve a\n" + rows), met = build("curve a by distance\n" + rows);
   ASSERT_TRUE(built.shape && met.shape);
   EXPECT_TRUE(built.diagnostics.messages().empty());
   EXPECT_FALSE(met.diagnostics.messages().empty());
@@ -152,7 +152,7 @@ TEST(Piece, SevenPointsOfACubicAreMet) {
     rows += fmt::format("{} {}\n", p.x(), p.y());
   }
   const auto largest = [&](const std::string& word) {
-    const Built built = build("curve c" + word + "\n" + rows + "end\nline l 12 0 0 0\n");
+    const BuiltPiece built = build("curve c" + word + "\n" + rows + "end\nline l 12 0 0 0\n");
     return built.shape ? built.shape->edges.front().fit ? built.shape->edges.front().fit->largest_error()
                                                         : built.shape->edges.back().fit->largest_error()
                        : -1.0;
@@ -170,7 +170,7 @@ TEST(Piece, GapsAreErrorsAtTheLineOfTheNextStart) {
 }
 
 TEST(Piece, TurnedLineIsSaidToBeTurned) {
-  const Built built = build("line a 0 0 2 0\nline b 2 2 2 0\nline c 2 2 0 0\n");
+  const BuiltPiece built = build("line a 0 0 2 0\nline b 2 2 2 0\nline c 2 2 0 0\n");
   EXPECT_FALSE(built.shape);
   EXPECT_NE(built.diagnostics.first_error()->text.find("turn its points round"), std::string::npos);
 }
@@ -185,17 +185,17 @@ TEST(Piece, OpenOutline) {
 }
 
 TEST(Piece, EveryGapIsTold) {
-  const Built built = build("line a 0 0 2 0\nline b 3 0 2 2\nline c 3 2 0 1\n");
+  const BuiltPiece built = build("line a 0 0 2 0\nline b 3 0 2 2\nline c 3 2 0 1\n");
   EXPECT_EQ(built.diagnostics.error_count(), 3);
 }
 
 TEST(Piece, EndsWithinTheToleranceAreJoined) {
   const std::string body = "line a 0 0 2 0\nline b 2.01 0 2 2\nline c 2 2 0 0\n";
   EXPECT_FALSE(build(body).shape);
-  const Built built = build(body, 0.02);
+  const BuiltPiece built = build(body, 0.02);
   ASSERT_TRUE(built.shape);
   EXPECT_DOUBLE_EQ(built.shape->area, 2);
-  const Built gone = build("line a 0 0 2 0\nline b 2.01 0 2 0\nline c 2 0 0 2\nline d 0 2 0 0\n", 0.02);
+  const BuiltPiece gone = build("line a 0 0 2 0\nline b 2.01 0 2 0\nline c 2 0 0 2\nline d 0 2 0 0\n", 0.02);
   ASSERT_FALSE(gone.shape);
   EXPECT_EQ(to_string(*gone.diagnostics.first_error()),
             "p.txt:5:1: error: line 'b' is shorter than the tolerance 0.02 within which ends are joined");
@@ -223,14 +223,14 @@ TEST(Piece, NumbersBeyondTheArithmetic) {
   EXPECT_NE(
       refusal("line a 0 0 1e-300 0\nline b 1e-300 0 0 1e-300\nline c 0 1e-300 0 0\n").find("nothing can be"),
       std::string::npos);
-  const Built large = build("line a 0 0 1e90 0\nline b 1e90 0 0 1e90\nline c 0 1e90 0 0\n");
+  const BuiltPiece large = build("line a 0 0 1e90 0\nline b 1e90 0 0 1e90\nline c 0 1e90 0 0\n");
   ASSERT_TRUE(large.shape);
   EXPECT_NEAR(large.shape->area / 5e179, 1, 1e-12);
 }
 
 // One closed curve alone is an outline: a drop.
 TEST(Piece, OneClosedCurve) {
-  const Built built = build("curve drop\n0 0\n2 1\n1 2\n0 0\nend\n");
+  const BuiltPiece built = build("curve drop\n0 0\n2 1\n1 2\n0 0\nend\n");
   ASSERT_TRUE(built.shape);
   EXPECT_EQ(built.shape->edges.size(), 1U);
   EXPECT_GT(built.shape->area, 0);
@@ -252,7 +252,7 @@ TEST(Piece, RationalControlPointsMakeACircle) {
                         x - a * y, y + a * x, w, -y + a * x, x + a * y, w, -y, x);
     std::tie(x, y) = std::pair(-y, x);
   }
-  const Built built = build(body);
+  const BuiltPiece built = build(body);
   ASSERT_TRUE(built.shape);
   EXPECT_NEAR(built.shape->area, 4 * std::numbers::pi, 1e-8);
   EXPECT_NEAR(built.shape->perimeter, 4 * std::numbers::pi, 1e-11);
@@ -270,8 +270,8 @@ TEST(Piece, SplinesGoThroughAllRows) {
   }
   const Vec3 end = points.back();
   for (const char* how : {"", " by uniform", " by centripetal"}) {
-    const Built built = build(fmt::format("curve c spline{}\n{}end\nline a {} {} 20 -9\nline b 20 -9 0 0\n",
-                                          how, rows, end.x(), end.y()));
+    const BuiltPiece built = build(fmt::format(
+        "curve c spline{}\n{}end\nline a {} {} 20 -9\nline b 20 -9 0 0\n", how, rows, end.x(), end.y()));
     ASSERT_TRUE(built.shape) << to_string(*built.diagnostics.first_error());
     nurbs::Curve curve = edge_named(*built.shape, "c")->curve;
     if ((curve.points.front() - points.front()).norm() > 1) curve = nurbs::reversed(curve);
@@ -295,9 +295,9 @@ TEST(Piece, EditsOfSplines) {
       "curve c spline\n0 0\n1 1\n2 1.5\n3 1\n4 0\nend\ncurve d spline\n4 0\n5 -1\n6 1\n8 0\nend\nline a 8 0 "
       "8 -5\n"
       "line b 8 -5 0 -5\nline e 0 -5 0 0\n";
-  const Built plain = build(body);
+  const BuiltPiece plain = build(body);
   ASSERT_TRUE(plain.shape);
-  const auto curve_of = [](const Built& built, std::string_view name) {
+  const auto curve_of = [](const BuiltPiece& built, std::string_view name) {
     nurbs::Curve curve = edge_named(*built.shape, name)->curve;
     return curve.points.front().x() < curve.points.back().x() ? curve : nurbs::reversed(curve);
   };

@@ -18,9 +18,9 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
-// A yarn through these points; with no more statements a straight or bent single yarn of diameter 1.
+// A yarn through these points; with no more statements a straight_line or bent single yarn of diameter 1.
 Fabric fabric_with(Thread thread, std::vector<Vec3> points) {
   Fabric fabric;
   thread.name = "t";
@@ -36,7 +36,7 @@ Fabric fabric_with(Thread thread, std::vector<Vec3> points) {
   return fabric;
 }
 
-const std::vector<Vec3> straight = {{0, 0, 0}, {20, 0, 0}};
+const std::vector<Vec3> straight_line = {{0, 0, 0}, {20, 0, 0}};
 const std::vector<Vec3> bent = {{0, 0, 0}, {4, 1, 0}, {8, 0, 1}, {12, -1, 0}, {16, 0, 0}};
 
 std::vector<YarnPlan> plans_of(const Fabric& fabric, Detail detail = Detail::filaments) {
@@ -184,7 +184,7 @@ TEST(DiscPacking, FillsOtherSections) {
 TEST(Plies, LengthIsTheHelixs) {
   for (const int count : {2, 3, 4, 7}) {
     const double turns = 120.0;  // per metre
-    for (const YarnPlan& plan : plans_of(fabric_with(ply_thread(count, turns, Hand::z), straight))) {
+    for (const YarnPlan& plan : plans_of(fabric_with(ply_thread(count, turns, Hand::z), straight_line))) {
       const double radius = nurbs::evaluate(plan.line.curve, 0.0).tail<2>().norm();
       const double formula = 20.0 * std::sqrt(1.0 + std::pow(2.0 * pi * radius * turns / 1000.0, 2));
       EXPECT_NEAR(nurbs::arc_length(plan.line.curve), formula, 1e-4 * formula) << count;
@@ -199,8 +199,8 @@ TEST(Plies, LengthIsTheHelixs) {
 }
 
 TEST(Plies, ZTurnsRightAndSLeft) {
-  const std::vector<YarnPlan> z = plans_of(fabric_with(ply_thread(3, 120.0, Hand::z), straight));
-  const std::vector<YarnPlan> s = plans_of(fabric_with(ply_thread(3, 120.0, Hand::s), straight));
+  const std::vector<YarnPlan> z = plans_of(fabric_with(ply_thread(3, 120.0, Hand::z), straight_line));
+  const std::vector<YarnPlan> s = plans_of(fabric_with(ply_thread(3, 120.0, Hand::s), straight_line));
   ASSERT_EQ(z.size(), 3U);
   ASSERT_EQ(s.size(), 3U);
   // A right-handed helix along x turns from y to z; 0.12 turns per mm over 20 mm.
@@ -220,7 +220,7 @@ TEST(Plies, UnitsOfTheFileHold) {
 TEST(Plies, NamesAndGroups) {
   Thread thread = ply_thread(2, 100.0, Hand::s);
   thread.filaments = 3;
-  const Fabric fabric = fabric_with(thread, straight);
+  const Fabric fabric = fabric_with(thread, straight_line);
   std::vector<std::string> names;
   for (const YarnPlan& plan : plans_of(fabric)) {
     names.push_back(plan.name);
@@ -240,31 +240,31 @@ TEST(Plies, NamesAndGroups) {
 TEST(Filaments, FillThePackingOrTheLargestShareThatDiscsAdmit) {
   for (const auto& [count, packing] :
        {std::pair{48, 0.6}, {48, 0.7}, {7, 0.5}, {19, 0.78}, {300, 0.75}, {1000, 0.8}})
-    EXPECT_NEAR(share(plans_of(fabric_with(filament_thread(count, packing), straight))), packing,
+    EXPECT_NEAR(share(plans_of(fabric_with(filament_thread(count, packing), straight_line))), packing,
                 0.02 * packing)
         << count;
   // Untwisted, 0.5 % of the diameter left free: (1 - 0.005)^2 of the published 0.646 and 0.778.
   for (const auto& [count, largest] : {std::pair{3, 0.646}, {7, 0.778}}) {
-    const std::vector<YarnPlan> plans = plans_of(fabric_with(filament_thread(count, 0.9), straight));
+    const std::vector<YarnPlan> plans = plans_of(fabric_with(filament_thread(count, 0.9), straight_line));
     EXPECT_NEAR(share(plans), largest * 0.995 * 0.995, 1e-3 * largest) << count;
     ASSERT_EQ(plans[0].messages.size(), 1U);
     EXPECT_NE(plans[0].messages[0].text.find(count == 3 ? "0.640" : "0.770"), std::string::npos)
         << plans[0].messages[0].text;
     for (std::size_t i = 1; i < plans.size(); ++i) EXPECT_TRUE(plans[i].messages.empty());
   }
-  EXPECT_TRUE(plans_of(fabric_with(filament_thread(7, 0.7), straight))[0].messages.empty());
+  EXPECT_TRUE(plans_of(fabric_with(filament_thread(7, 0.7), straight_line))[0].messages.empty());
 }
 
 TEST(Filaments, DoNotOverlapStraightTwistedOrBent) {
   for (const int count : {3, 7, 19, 48})
     for (const double turns : {0.0, 100.0, 250.0})
-      for (const std::vector<Vec3>& path : {straight, bent}) {
+      for (const std::vector<Vec3>& path : {straight_line, bent}) {
         const std::vector<YarnPlan> plans = plans_of(fabric_with(filament_thread(count, 0.9, turns), path));
         ASSERT_EQ(plans.size(), static_cast<std::size_t>(count));
         // What is left free is 1 % at most where nothing bends; nothing is lost to the inclination.
         const double clearance = least_clearance(plans);
         EXPECT_GE(clearance, 1.0 + 1e-3) << count << " filaments, " << turns << " turns";
-        if (path == straight) {
+        if (path == straight_line) {
           EXPECT_LE(clearance, 1.011) << count << " filaments, " << turns << " turns";
         }
       }
@@ -273,8 +273,8 @@ TEST(Filaments, DoNotOverlapStraightTwistedOrBent) {
 TEST(Filaments, OfTheCrossSectionAloneWouldOverlapWhenTwisted) {
   // The same discs, twisted without regard to the inclination, come nearer to each other than their diameter:
   // the shrinking is needed.
-  const double at_rest = diameter_of(plans_of(fabric_with(filament_thread(19, 0.9), straight))[0]);
-  const std::vector<YarnPlan> twisted = plans_of(fabric_with(filament_thread(19, 0.9, 250.0), straight));
+  const double at_rest = diameter_of(plans_of(fabric_with(filament_thread(19, 0.9), straight_line))[0]);
+  const std::vector<YarnPlan> twisted = plans_of(fabric_with(filament_thread(19, 0.9, 250.0), straight_line));
   EXPECT_LT(diameter_of(twisted[0]), 0.97 * at_rest);
 }
 
@@ -282,7 +282,7 @@ TEST(Filaments, CabledYarnsDoNotOverlap) {
   Thread thread = ply_thread(3, 100.0, Hand::z);
   thread.filaments = 7;
   thread.twist = Twist{200.0, Hand::s, false};
-  for (const std::vector<Vec3>& path : {straight, bent}) {
+  for (const std::vector<Vec3>& path : {straight_line, bent}) {
     const std::vector<YarnPlan> plans = plans_of(fabric_with(thread, path));
     ASSERT_EQ(plans.size(), 21U);
     EXPECT_GE(least_clearance(plans), 1.0 + 1e-3);
@@ -302,7 +302,7 @@ TEST(Filaments, RingsClose) {
 }
 
 TEST(Filaments, OneThousand) {
-  const std::vector<YarnPlan> plans = plans_of(fabric_with(filament_thread(1000, 0.75, 50.0), straight));
+  const std::vector<YarnPlan> plans = plans_of(fabric_with(filament_thread(1000, 0.75, 50.0), straight_line));
   ASSERT_EQ(plans.size(), 1000U);
   EXPECT_NEAR(share(plans), 0.75, 0.02 * 0.75);
 }
@@ -312,18 +312,19 @@ TEST(Plies, WhatCannotBe) {
     return text.find(part) != std::string::npos;
   };
   // 45 degrees at the outside: 2 pi 0.5 n = 1 at n = 318 turns per metre.
-  EXPECT_TRUE(has(error_of(fabric_with(ply_thread(3, 330.0, Hand::z), straight)), "at most 311 turns"))
-      << error_of(fabric_with(ply_thread(3, 330.0, Hand::z), straight));
-  EXPECT_EQ(error_of(fabric_with(ply_thread(3, 311.0, Hand::z), straight)), "");
+  EXPECT_TRUE(has(error_of(fabric_with(ply_thread(3, 330.0, Hand::z), straight_line)), "at most 311 turns"))
+      << error_of(fabric_with(ply_thread(3, 330.0, Hand::z), straight_line));
+  EXPECT_EQ(error_of(fabric_with(ply_thread(3, 311.0, Hand::z), straight_line)), "");
   const std::vector<Vec3> tight = {{0, 0, 0}, {1, 0.6, 0}, {1.4, 0, 0}, {1, -0.6, 0}, {0, -0.7, 0}};
   EXPECT_TRUE(has(error_of(fabric_with(ply_thread(3, 10.0, Hand::z), tight)), "too tight"))
       << error_of(fabric_with(ply_thread(3, 10.0, Hand::z), tight));
   Thread flat = ply_thread(3, 10.0, Hand::z);
   flat.section = yarn::Ellipse{2.0, 1.0};
-  EXPECT_TRUE(has(error_of(fabric_with(flat, straight)), "round section"));
-  EXPECT_TRUE(has(error_of(fabric_with(filament_thread(2000000000, 0.7), straight)), "--detail yarn"));
-  EXPECT_TRUE(has(error_of(fabric_with(ply_thread(1001, 1.0, Hand::z), straight)), "at most 1000 plies"));
-  Fabric sized = fabric_with(filament_thread(3, 0.5), straight);
+  EXPECT_TRUE(has(error_of(fabric_with(flat, straight_line)), "round section"));
+  EXPECT_TRUE(has(error_of(fabric_with(filament_thread(2000000000, 0.7), straight_line)), "--detail yarn"));
+  EXPECT_TRUE(
+      has(error_of(fabric_with(ply_thread(1001, 1.0, Hand::z), straight_line)), "at most 1000 plies"));
+  Fabric sized = fabric_with(filament_thread(3, 0.5), straight_line);
   std::get<Path>(std::get<Yarn>(sized.items[0]).shape).sizes = {SizeAt{1.0, 1.0, {}}, SizeAt{2.0, 2.0, {}}};
   EXPECT_TRUE(has(error_of(sized), "same section all along"));
 }

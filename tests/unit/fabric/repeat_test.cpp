@@ -15,14 +15,14 @@
 namespace selvage::fabric {
 namespace {
 
-struct Built {
+struct BuiltRepeat {
   Fabric fabric;
   std::optional<Repeat> repeat;
   std::vector<yarn::Body> bodies;
 };
 
-Built build(const Source& source, double gap = 0) {
-  Built built;
+BuiltRepeat build(const Source& source, double gap = 0) {
+  BuiltRepeat built;
   Diagnostics diagnostics;
   std::optional<Fabric> fabric = formats::txt::descriptor().read_fabric(source, diagnostics);
   EXPECT_TRUE(fabric.has_value());
@@ -42,13 +42,13 @@ Built build(const Source& source, double gap = 0) {
   return built;
 }
 
-Built sample(const std::string& name, double gap = 0) {
+BuiltRepeat sample(const std::string& name, double gap = 0) {
   const Result<Source> source = Source::open(places::samples() + "/" + name);
   EXPECT_TRUE(source.ok()) << name;
-  return source ? build(*source, gap) : Built{};
+  return source ? build(*source, gap) : BuiltRepeat{};
 }
 
-Built text(const std::string& statements) {
+BuiltRepeat text(const std::string& statements) {
   return build(Source::from_memory(
       "fabric 1\nthread T\ndiameter 0.2\nend\nthread U\ndiameter 0.2\nend\n" + statements, "test.txt"));
 }
@@ -57,7 +57,7 @@ std::string weave(const std::string& warp, const std::string& weft, const std::s
   return "weave\nwarp " + warp + "\nweft " + weft + "\n" + rest + "\nend\n";
 }
 
-void expect_repeat(const Built& built, std::array<double, 3> wanted) {  // 0: none
+void expect_repeat(const BuiltRepeat& built, std::array<double, 3> wanted) {  // 0: none
   ASSERT_TRUE(built.repeat.has_value());
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ((*built.repeat)[k].has_value(), wanted[k] > 0) << k;
@@ -121,7 +121,7 @@ double distance_to(const std::vector<yarn::Body>& bodies, const Vec3& p) {
 
 // How far a surface is from itself a repeat further, where it passes the cell's low face across `axis`;
 // relative to the repeat. Only yarns that run through the face: others have no counterpart in a single cell.
-double misfit(const Built& built, int axis) {
+double misfit(const BuiltRepeat& built, int axis) {
   const Vec3 low = built.fabric.cell->low, high = built.fabric.cell->high;
   const double period = high[axis] - low[axis];
   double largest = -1;
@@ -153,7 +153,7 @@ TEST(Repeat, FacesOfACellCutItsYarnsAlike) {
 TEST(Repeat, CellsOfTheSamplesAreOneRepeat) {
   for (const char* name : {"cell_plain.txt", "twill_cell.txt", "cell_satin5.txt", "cell_orthogonal.txt",
                            "cell_jersey.txt", "cell_tricot.txt", "cell_glass.txt"}) {
-    const Built built = sample(name);
+    const BuiltRepeat built = sample(name);
     const Vec3 size = built.fabric.cell->high - built.fabric.cell->low;
     expect_repeat(built, {size.x(), size.y(), 0});
     SCOPED_TRACE(name);
@@ -178,7 +178,7 @@ TEST(Repeat, OfYarnsByHandIsFoundOnTheirCentreLines) {
                std::to_string(0.3 * std::sin(2 * std::acos(-1.0) * k / 16 + std::acos(-1.0) * yarn)) + "\n";
     waves += "end\nend\n";
   }
-  const Built built = text(waves);
+  const BuiltRepeat built = text(waves);
   EXPECT_FALSE(built.repeat.has_value());
   const std::optional<double> along = repeat_of_lines(built.bodies, 0, 0.004);
   ASSERT_TRUE(along.has_value());
@@ -187,7 +187,7 @@ TEST(Repeat, OfYarnsByHandIsFoundOnTheirCentreLines) {
   ASSERT_TRUE(beside.has_value());
   EXPECT_NEAR(*beside, 1.5, 1e-6);
   // Straight yarns along x: any shift along it.
-  const Built straight =
+  const BuiltRepeat straight =
       text("yarn a T\npath\n0 0 0\n3 0 0\nend\nend\nyarn b T\npath\n0 1 0\n3 1 0\nend\nend\n");
   const std::optional<double> free = repeat_of_lines(straight.bodies, 0, 0.004);
   ASSERT_TRUE(free.has_value());
@@ -200,7 +200,7 @@ TEST(Gap, IsKeptByAllConstructionsOfCells) {
                                                   {"cell_satin5.txt", 0.015}, {"cell_orthogonal.txt", 0.01},
                                                   {"cell_jersey.txt", 0.01},  {"cell_tricot.txt", 0.005}};
   for (const auto& [name, gap] : cells) {
-    const Built built = sample(name, gap);
+    const BuiltRepeat built = sample(name, gap);
     contact::ContactOptions options;
     options.reach = gap;
     const Result<contact::Contacts> found = contact::find_contacts(built.bodies, options);
@@ -228,7 +228,7 @@ TEST(Gap, IsKeptByAllConstructionsOfCells) {
 }
 
 // How many yarns along x have the low, and the high, face across y run along inside them.
-std::array<std::size_t, 2> yarns_in_faces(const Built& built) {
+std::array<std::size_t, 2> yarns_in_faces(const BuiltRepeat& built) {
   constexpr int axis = 1;
   const Box3 box(built.fabric.cell->low, built.fabric.cell->high);
   std::array<std::size_t, 2> counts{};
@@ -258,13 +258,13 @@ std::string binders_in_every_gap(const std::string& cell) {
 
 // Four warps have three gaps between them, and the fourth is the one at the cell's faces.
 TEST(Repeat, YarnsInTheFacesOfAPeriodicCellAreThere) {
-  const Built edge = text(binders_in_every_gap("0 0 -1.2  15 8.4 1.2"));
+  const BuiltRepeat edge = text(binders_in_every_gap("0 0 -1.2  15 8.4 1.2"));
   EXPECT_EQ(yarns_in_faces(edge), (std::array<std::size_t, 2>{1, 1}));
-  const Built inside = text(binders_in_every_gap("0 1.05 -1.2  15 9.45 1.2"));
+  const BuiltRepeat inside = text(binders_in_every_gap("0 1.05 -1.2  15 9.45 1.2"));
   // Faces in the middle of warps, both layers.
   EXPECT_EQ(yarns_in_faces(inside), (std::array<std::size_t, 2>{2, 2}));
   // The same cloth: a cell's volume of binder is that of a cell shifted by half a pitch.
-  const auto binder_volume = [](const Built& built) {
+  const auto binder_volume = [](const BuiltRepeat& built) {
     const Box3 box(built.fabric.cell->low, built.fabric.cell->high);
     double volume = 0.0;
     for (const yarn::Body& body : built.bodies) {
@@ -291,7 +291,7 @@ TEST(Repeat, YarnsInTheFacesOfAPeriodicCellAreThere) {
 
 // Copies that are missing in a face itself are missed.
 TEST(Repeat, AMissingCopyInAFaceIsFound) {
-  const Built cloth = text(
+  const BuiltRepeat cloth = text(
       "yarn a T\npath\n0 1 0\n4 1 0\nend\nend\nyarn b T\npath\n0 2 0\n4 2 0\nend\nend\n"
       "yarn c T\npath\n0 3 0\n4 3 0\nend\nend\n");
   const double margin = 0.05;

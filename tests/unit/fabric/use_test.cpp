@@ -17,7 +17,7 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 const std::string head =
     "fabric 1\nthread t\n diameter 0.5\nend\nthread flat\n section ellipse 1 0.3\n twist 100 Z\nend\nthread "

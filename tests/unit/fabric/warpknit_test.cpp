@@ -80,12 +80,12 @@ TEST(Lapping, ClassicsOpenAndClosed) {
   EXPECT_TRUE(classic_lappings("jersey", Warpknit::Stitch::open).empty());
 }
 
-struct Built {
+struct BuiltWarpKnit {
   Diagnostics diagnostics;
   std::optional<Fabric> fabric;
   std::optional<YarnBuilder> builder;
 
-  explicit Built(const std::string& body, const std::string& after = {}) {
+  explicit BuiltWarpKnit(const std::string& body, const std::string& after = {}) {
     const Source source = Source::from_memory(
         "fabric 1\nthread t\n  diameter 0.1\nend\nwarpknit\n" + body + "end\n" + after, "w.txt");
     fabric = formats::txt::descriptor().read_fabric(source, diagnostics);
@@ -97,7 +97,7 @@ struct Built {
 };
 
 TEST(Warpknit, OneYarnAGuideAndBar) {
-  const Built built("  bar t 1-0/1-2\n  bar t 1-0/3-4\n  wales 5 pitch 1\n  courses 4 pitch 1\n");
+  const BuiltWarpKnit built("  bar t 1-0/1-2\n  bar t 1-0/3-4\n  wales 5 pitch 1\n  courses 4 pitch 1\n");
   ASSERT_TRUE(built.builder) << built.message();
   ASSERT_EQ(built.builder->count(), 10U);
   const Result<YarnPlan> plan = built.builder->plan(8);
@@ -109,7 +109,8 @@ TEST(Warpknit, OneYarnAGuideAndBar) {
 // The pitches that the messages name are the smallest ones.
 TEST(Warpknit, SmallestPitches) {
   const auto with = [](const std::string& wales, const std::string& courses) {
-    return Built("  bar t 1-0/1-2\n  wales 3 pitch " + wales + "\n  courses 3 pitch " + courses + "\n")
+    return BuiltWarpKnit("  bar t 1-0/1-2\n  wales 3 pitch " + wales + "\n  courses 3 pitch " + courses +
+                         "\n")
         .message();
   };
   EXPECT_EQ(with("0.4", "0.45"), "");
@@ -171,32 +172,34 @@ TEST(Warpknit, FibresComeCloserWhereALoopHasNoRoom) {
 
 TEST(Warpknit, WhatCannotBeIsSaidAtItsPlace) {
   const std::string size = "  wales 3 pitch 1\n  courses 3 pitch 1\n";
-  EXPECT_NE(Built("  bar t 1-0/1-3\n" + size)
+  EXPECT_NE(BuiltWarpKnit("  bar t 1-0/1-3\n" + size)
                 .message()
                 .find("w.txt:6:9: error: overlap 2 of this lapping, 1-3, goes over 2"),
             std::string::npos)
-      << Built("  bar t 1-0/1-3\n" + size).message();
-  EXPECT_NE(Built("  bar t 0-0/2-2\n" + size).message().find("no bar of this warp knit forms loops"),
+      << BuiltWarpKnit("  bar t 1-0/1-3\n" + size).message();
+  EXPECT_NE(BuiltWarpKnit("  bar t 0-0/2-2\n" + size).message().find("no bar of this warp knit forms loops"),
             std::string::npos);
-  EXPECT_NE(Built("  bar t 1-0/1-2 fall-plate\n" + size).message().find("forms loops"), std::string::npos);
-  EXPECT_NE(Built("  bar t 1-0/1-2/\n" + size).message().find("does not close"), std::string::npos);
-  EXPECT_NE(Built("  bar t 1-0/1-2\n  wales -3 pitch 1\n  courses 3 pitch 1\n").message().find("w.txt:7:9"),
+  EXPECT_NE(BuiltWarpKnit("  bar t 1-0/1-2 fall-plate\n" + size).message().find("forms loops"),
             std::string::npos);
-  const Built held("  bar t 1-0/1-1/1-1/1-1/1-1/1-1/1-1/1-1/1-1/1-1\n" + size);
+  EXPECT_NE(BuiltWarpKnit("  bar t 1-0/1-2/\n" + size).message().find("does not close"), std::string::npos);
+  EXPECT_NE(
+      BuiltWarpKnit("  bar t 1-0/1-2\n  wales -3 pitch 1\n  courses 3 pitch 1\n").message().find("w.txt:7:9"),
+      std::string::npos);
+  const BuiltWarpKnit held("  bar t 1-0/1-1/1-1/1-1/1-1/1-1/1-1/1-1/1-1/1-1\n" + size);
   ASSERT_TRUE(held.builder);
   EXPECT_FALSE(held.builder->plan(0).ok());
 }
 
 TEST(Warpknit, AbsurdSizesAreRefusedBeforeTheyAreBuilt) {
   const std::string message =
-      Built("  bar t 1-0/1-2\n  wales 1000000000 pitch 1\n  courses 1000000000 pitch 1\n").message();
+      BuiltWarpKnit("  bar t 1-0/1-2\n  wales 1000000000 pitch 1\n  courses 1000000000 pitch 1\n").message();
   EXPECT_NE(message.find("data points"), std::string::npos) << message;
 }
 
 // With a unit cell the yarns go on by more than a pitch on both sides, and are the same within.
 TEST(Warpknit, CellContinuesTheYarns) {
   const std::string body = "  bar t 1-0/1-2\n  wales 3 pitch 1\n  courses 4 pitch 1\n";
-  const Built plain(body), cut(body, "cell 1 0 -1  3 2 1\nend\n");
+  const BuiltWarpKnit plain(body), cut(body, "cell 1 0 -1  3 2 1\nend\n");
   ASSERT_TRUE(plain.builder && cut.builder) << cut.message();
   const std::vector<Vec3> a = plain.builder->plan(1)->points, b = cut.builder->plan(1)->points;
   EXPECT_LE(b.front().y(), a.front().y() - 1.0);

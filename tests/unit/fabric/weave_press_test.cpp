@@ -16,7 +16,7 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Thread yarn_of(std::string name, double tex, double density, double packing) {
   Thread thread;

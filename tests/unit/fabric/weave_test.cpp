@@ -15,7 +15,7 @@
 namespace selvage::fabric {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Thread thread_of(std::string name, yarn::Section section) {
   Thread thread;

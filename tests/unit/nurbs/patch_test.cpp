@@ -12,7 +12,7 @@
 namespace selvage::nurbs {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A torus reaches R sin(angle to the axis) + r along a direction.
 TEST(BoxOfASurface, IsThatOfATorus) {

@@ -14,7 +14,7 @@
 namespace selvage::nurbs {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<Vec3> helix_points(int count, double noise, unsigned seed) {
   std::mt19937 random(seed);

@@ -14,7 +14,7 @@ using test::straight;
 using test::TubeForm;
 using yarn::EndStyle;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 YarnCheck check_one(const yarn::Body& body, double chord = 0.0) {
   CheckOptions options;

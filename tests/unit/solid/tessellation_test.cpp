@@ -16,7 +16,7 @@ using test::straight;
 using test::TubeForm;
 using yarn::EndStyle;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Edges that do not have exactly one triangle on each side, running opposite ways.
 int count_bad_edges(const Tessellation& skin) {

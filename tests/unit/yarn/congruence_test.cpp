@@ -11,7 +11,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A bar that bends and rises, so that no motion but the identity brings it onto itself.
 Body made(EndStyle ends) {

@@ -11,7 +11,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A waved bar or a ring of round sections; weights 1, 1.2, 1.4 in turn where it is rational.
 Body made(bool ring, bool rational, EndStyle ends) {

@@ -12,7 +12,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Body bar(const Section& section, const SectionSize& size, EndStyle ends) {
   PathRows rows;

@@ -11,7 +11,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 nurbs::Curve helix(double radius, double pitch, double turns, int per_turn) {
   std::vector<Vec3> points;

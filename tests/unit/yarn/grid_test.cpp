@@ -11,7 +11,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Sections of a round bar along x, control points counter-clockwise seen against x.
 GridNet bar(int sections, int round, double length = 3.0) {

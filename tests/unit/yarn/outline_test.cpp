@@ -11,7 +11,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 nurbs::Curve curve_of(const Outline& outline) {
   nurbs::Curve curve{outline.degree, outline.knots, {}, {}};

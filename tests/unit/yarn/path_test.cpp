@@ -10,7 +10,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(PathTest, PolylineIsSegmentsAndExactArcs) {
   PathRows rows;

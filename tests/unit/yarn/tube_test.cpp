@@ -15,7 +15,7 @@
 namespace selvage::yarn {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Body make(const PathRows& rows, const TubeSpec& spec, EndStyle ends = EndStyle::patch) {
   Body body;
