@@ -7,7 +7,7 @@ import re
 import shutil
 import unittest
 
-from program import BAD, Case, GRID, PATH, RING, files_below, run
+from program import BAD, Case, GRID, PATH, RING
 
 
 class Report(Case):

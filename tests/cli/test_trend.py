@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "benchmarks"))
-import trend  # noqa: E402
+import trend
 
 PAGE = """# Benchmarks
 
