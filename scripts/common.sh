@@ -18,11 +18,6 @@ jobs=$((gigabytes / 2))
 # shellcheck disable=SC2034  # of scripts/sanitize and scripts/fuzz
 sanitizer_flags="-O2 -g1 -DCGAL_NDEBUG -fsanitize-ignorelist=$root/scripts/suppressions/headers.txt"
 
-# python_files, shell_files: the sources in that language, by ending or first line.
-with_first_line() { grep -rlE -m 1 "^#!.*$1" .ci scripts tests samples --exclude='*.py'; }
-python_files() { { find scripts tests samples -name '*.py' && with_first_line 'python3?$'; } | LC_ALL=C sort; }
-shell_files() { { echo scripts/common.sh && with_first_line '(/sh|bash)$'; } | LC_ALL=C sort; }
-
 # configure [CMAKE OPTIONS]: quiet unless it fails.
 configure() {
   log=$(mktemp)
@@ -55,3 +50,8 @@ compile() {
   rm -f "$log"
   return "$status"
 }
+
+# python_files, shell_files: the sources in that language, by ending or first line.
+with_first_line() { grep -rlE -m 1 "^#!.*$1" .ci scripts tests samples --exclude='*.py'; }
+python_files() { { find scripts tests samples -name '*.py' && with_first_line 'python3?$'; } | LC_ALL=C sort; }
+shell_files() { { echo scripts/common.sh && with_first_line '(/sh|bash)$'; } | LC_ALL=C sort; }

@@ -7,7 +7,7 @@ import signal
 import time
 import unittest
 
-from program import Case, GRID, RING, children_of, files_below, start
+from program import Case, GRID, RING, children_of, environment, files_below, run, start
 
 
 class Isolation(Case):

@@ -7,7 +7,7 @@ import re
 import shutil
 import unittest
 
-from program import BAD, Case, GRID, PATH, RING
+from program import BAD, Case, GRID, PATH, RING, files_below, run
 
 
 class Report(Case):

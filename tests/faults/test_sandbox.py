@@ -8,7 +8,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from program import Case, GRID, RING, environment, files_below, run
+from program import Case, GRID, RING, environment, files_below, run  # noqa: E402
 
 
 def has_landlock():
