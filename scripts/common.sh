@@ -15,6 +15,7 @@ jobs=$((gigabytes / 2))
 
 # Of builds with clang's sanitizers: headers of libraries are left as they are, since their exact numbers and matrices take
 # most of the time. Eigen asserts its indices itself.
+# shellcheck disable=SC2034  # of scripts/sanitize and scripts/fuzz
 sanitizer_flags="-O2 -g1 -DCGAL_NDEBUG -fsanitize-ignorelist=$root/scripts/suppressions/headers.txt"
 
 # configure [CMAKE OPTIONS]: quiet unless it fails.
@@ -37,6 +38,7 @@ compile() {
   fi
   log=$(mktemp)
   # The sleep holds nothing open that a reader of our output might wait for.
+  # shellcheck disable=SC2217  # so that its standard input is not ours
   while sleep 10 < /dev/null > /dev/null 2>&1; do
     echo "building: $(grep -oE '^\[[0-9]+/[0-9]+\]' "$log" | tail -n 1)" >&2
   done &
@@ -48,3 +50,8 @@ compile() {
   rm -f "$log"
   return "$status"
 }
+
+# python_files, shell_files: the sources in that language, by ending or first line.
+with_first_line() { grep -rlE -m 1 "^#!.*$1" .ci scripts tests samples --exclude='*.py'; }
+python_files() { { find scripts tests samples -name '*.py' && with_first_line 'python3?$'; } | LC_ALL=C sort; }
+shell_files() { { echo scripts/common.sh && with_first_line '(/sh|bash)$'; } | LC_ALL=C sort; }

@@ -20,7 +20,7 @@ import tempfile
 
 try:
     import numpy
-    import scipy  # noqa: F401
+    import scipy  # noqa: F401 (that it is there)
 except ModuleNotFoundError:
     sys.exit("permeability: NumPy and SciPy are not installed: apt-get install python3-numpy python3-scipy")
 

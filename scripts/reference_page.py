@@ -6,7 +6,8 @@ COLUMNS = (("stiffness", "tetrahedra"), ("stiffness", "voxels"), ("conductivity"
 METHOD = """Unit cells for whoever has a program of their own: texts, meshes by one command, and what comes out, with errors. All cells repeat along x, y
 and z. C is the stiffness in MPa (xy,xy is a shear modulus), k the conductivity in W/(m K), K the permeability of the pores in mm2.
 Yarns keep 16 % of the thickness of the thinnest one apart, or more: across a gap that is thinner than a voxel yarns touch, and the cell comes out too
-stiff (a jersey with gaps of 5 % by 4 %). Tetrahedra have ten nodes (the flow's are Taylor and Hood's), voxels eight. `results.json` has all of it for programs, with more digits.
+stiff (a jersey with gaps of 5 % by 4 %). Tetrahedra have ten nodes (the flow's are Taylor and Hood's), voxels eight. `results.json` has
+all of it for programs, with more digits.
 
 The error that is stated of a mesh (after Roache, J. Fluids Eng. 116 (1994) 405-413, and Eça, Hoekstra, J. Comput. Phys. 262 (2014)
 104-130; the fineness is the cube root of the number of elements):

@@ -366,7 +366,7 @@ def main():
     summary = trend.summary(before, of[1] if of else "", text)
     text = f"{title}\n\n{summary}\n## {rest}"
     page.write_text(text)
-    trend.plot(text, page.with_suffix(".svg"))
+    page.with_suffix(".svg").write_text(trend.plot(text))
     print(text)
     print(summary)
 

@@ -8,6 +8,8 @@ import math
 import re
 import statistics
 
+import plots
+
 LESS, MORE = "less", "more"
 # Columns of our own figures, and what is better.
 FIGURES = [
@@ -197,28 +199,9 @@ def summary(before, commit, now):
     return "\n".join(lines).replace("\n\n\n", "\n\n") + "\n"
 
 
-def plot(text, path):
-    """Every curve of growth, a panel a section."""
-    import matplotlib
-
-    matplotlib.use("svg")
-    matplotlib.rcParams["svg.hashsalt"] = "selvage"  # the same figures are the same bytes
-    import matplotlib.pyplot as plt
-
+def plot(text):
+    """An SVG file of every curve of growth, a panel for each section."""
     sections = {}
     for section, what, points in curves(text):
-        sections.setdefault(section.split(":")[0], []).append((what, points))
-    columns = 2
-    rows = max(1, (len(sections) + columns - 1) // columns)
-    figure, panels = plt.subplots(rows, columns, figsize=(7 * columns, 4 * rows), squeeze=False)
-    for panel in panels.flat[len(sections):]:
-        panel.axis("off")
-    for panel, (section, lines) in zip(panels.flat, sections.items()):
-        for what, points in lines:
-            panel.loglog(*zip(*points), marker="o", markersize=3, label=f"{what} ({exponent(points):.2f})")
-        panel.set_title(section, fontsize=9)
-        panel.set_xlabel("number", fontsize=8)
-        panel.legend(fontsize=6)
-    figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
-    plt.close(figure)
+        sections.setdefault(section.split(":")[0], []).append((f"{what} ({exponent(points):.2f})", points))
+    return plots.page(sections)

@@ -1,7 +1,6 @@
 """Every command of the documents works as printed, and nothing is said in two of them."""
 
 import os
-import pathlib
 import re
 import shutil
 import subprocess

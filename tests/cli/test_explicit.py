@@ -3,8 +3,6 @@ and the stable increment is what numpy makes of the mesh. Neither solver is here
 
 import json
 import math
-import re
-import subprocess
 import unittest
 
 import numpy as np

@@ -185,7 +185,7 @@ class Grammar(Case):
         texts = [p.read_text() for p in (ROOT / "samples").glob("*.txt")]
         count = 0
         for text in texts:
-            self.assertRegex(next(l for l in text.splitlines() if l and not l.startswith("#")), grammar["firstLineMatch"])
+            self.assertRegex(next(line for line in text.splitlines() if line and not line.startswith("#")), grammar["firstLineMatch"])
             rows, params = False, re.findall(r"(?m)^param\s+(\w+)", text)
             for line in text.splitlines():
                 word = re.match(r"\s*([A-Za-z][\w.-]*)", line)

@@ -6,7 +6,6 @@ margin (`edit` has no such option and is given processor time).
 More inputs from outside are run where their folder is present, and the run says so.
 """
 
-import json
 import os
 import re
 import resource

@@ -71,6 +71,7 @@ class Installed(Case):
             "lib/selvage/selvage_embree.so", "lib/selvage/selvage_hdf5.so", "lib/selvage/selvage_minizip.so", "lib/selvage/selvage_muparser.so",
             "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
             *(["lib/selvage/three.module.min.js"] if HAS_PAGES else []),
+            *(["share/doc/selvage/selvage.spdx.json"] if (BUILD / "selvage.spdx.json").exists() else []),
             "share/doc/selvage/copyright", "share/doc/selvage/CHANGELOG.md", "share/man/man1/selvage.1",
             "share/bash-completion/completions/selvage", "share/zsh/vendor-completions/_selvage",
             "share/fish/vendor_completions.d/selvage.fish"})

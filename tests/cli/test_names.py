@@ -1,12 +1,11 @@
 """Names on a terminal: nothing in them steers it or turns text around, and long ones widen neither tables nor comments."""
 
 import json
-import pathlib
 import re
 import shutil
 import unittest
 
-from program import Case, GRID, PATH, RING, files_below, run
+from program import Case, GRID, PATH, RING, run
 
 STEERING = "a\x1b[2J\n\x9b31m\u202egpj\u2066\x07"
 SHOWN = r"a\x1B[2J\n\x9B31m\u202Egpj\u2066\x07"

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import unittest
 
-from program import Case, files_below, run
+from program import Case, files_below
 
 WEAVE = """fabric 1
 units mm

@@ -1,12 +1,14 @@
 """What the benchmark's page says of the page before: nothing that became worse goes unseen."""
 
+import math
 import pathlib
 import sys
 import unittest
+from xml.etree import ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "benchmarks"))
-import trend  # noqa: E402
+import trend
 
 PAGE = """# Benchmarks
 
@@ -101,6 +103,32 @@ class Trend(unittest.TestCase):
         self.assertIn("ours, s 16 -> 32", summary)
         self.assertIn("Overlaps, jersey, ours, s: 2.50", summary)
         self.assertIn("There are no results to compare with.", trend.summary("", "", PAGE))
+
+    def test_plots_have_every_curve_at_its_place(self):
+        """Equal ratios are equal lengths, in x and y; the labels are the names and exponents."""
+        drawing = ElementTree.fromstring(trend.plot(PAGE))
+        lines = [
+            [tuple(map(float, point.split(","))) for point in line.get("points").split()]
+            for line in drawing.iter("{http://www.w3.org/2000/svg}polyline")
+        ]
+        curves = trend.curves(PAGE)
+        self.assertEqual([len(line) for line in lines], [len(points) for _, _, points in curves])
+        for line, (_, _, points) in zip(lines, curves):
+            for axis, sign in ((0, 1), (1, -1)):
+                for first, second in zip(range(len(points)), range(1, len(points))):
+                    length = sign * (line[second][axis] - line[first][axis])
+                    ratio = points[second][axis] / points[first][axis]
+                    self.assertGreater(length, 0)
+                    whole = sign * (line[-1][axis] - line[0][axis])
+                    of_all = math.log(ratio) / math.log(points[-1][axis] / points[0][axis])
+                    self.assertAlmostEqual(length / whole, of_all, delta=0.01)
+        texts = [text.text for text in drawing.iter("{http://www.w3.org/2000/svg}text")]
+        for _, what, points in curves:
+            self.assertIn(f"{what} ({trend.exponent(points):.2f})", texts)
+
+    def test_the_committed_plots_are_those_of_the_page(self):
+        page = ROOT / "scripts" / "benchmarks" / "RESULTS.md"
+        self.assertEqual(page.with_suffix(".svg").read_text(), trend.plot(page.read_text()))
 
 
 if __name__ == "__main__":

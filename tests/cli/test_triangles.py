@@ -14,7 +14,7 @@ import numpy as np
 from program import PROGRAM, ROOT, SAMPLES, Case, files_below
 
 sys.path.insert(0, str(ROOT / "tests/formats/triangles"))
-import reader  # noqa: E402
+import reader
 
 RING = SAMPLES / "ring.txt"
 # Paths and grids, ends of every style, rings, plies, knits.

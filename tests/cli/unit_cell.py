@@ -66,10 +66,10 @@ def corner_volumes(points, cells):
 
 def shape_slopes(x, y, z):
     """Derivatives of the ten shape functions by the three coordinates at a point of the unit tetrahedron."""
-    l = np.array([1 - x - y - z, x, y, z])
+    linear = np.array([1 - x - y - z, x, y, z])
     d = np.array([[-1, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
-    rows = [(4 * l[i] - 1) * d[i] for i in range(4)]
-    rows += [4 * (l[a] * d[b] + l[b] * d[a]) for a, b in EDGES]
+    rows = [(4 * linear[i] - 1) * d[i] for i in range(4)]
+    rows += [4 * (linear[a] * d[b] + linear[b] * d[a]) for a, b in EDGES]
     return np.array(rows)
 
 

@@ -23,8 +23,8 @@ if os.geteuid() == 0:
     os.setuid(NOBODY.pw_uid)
     os.environ["HOME"] = "/nonexistent"
 
-from program import PROGRAM, ROD, ROOT, Case, environment, files_below, run  # noqa: E402
-from slurm_cluster import SlurmCluster, wait_for  # noqa: E402
+from program import PROGRAM, ROD, ROOT, Case, environment, files_below, run
+from slurm_cluster import SlurmCluster, wait_for
 
 DRIVER = ROOT / "scripts" / "cluster" / "selvage-slurm"
 

@@ -141,6 +141,20 @@ ALIAS(fstat64, fstat, -1, EIO, int, (int file, struct stat64* facts) noexcept, (
 CALL(poll, -1, ENOMEM, int, (pollfd * watched, nfds_t count, int milliseconds),
      (watched, count, milliseconds))
 
+// What a release build calls instead (_FORTIFY_SOURCE) where the compiler knows the size of a buffer.
+ALIAS(__read_chk, read, -1, EIO, ssize_t, (int file, void* to, size_t size, size_t room),
+      (file, to, size, room))
+ALIAS(__pread_chk, pread, -1, EIO, ssize_t, (int file, void* to, size_t size, off_t at, size_t room),
+      (file, to, size, at, room))
+ALIAS(__pread64_chk, pread, -1, EIO, ssize_t, (int file, void* to, size_t size, off64_t at, size_t room),
+      (file, to, size, at, room))
+ALIAS(__poll_chk, poll, -1, ENOMEM, int, (pollfd * watched, nfds_t count, int milliseconds, size_t room),
+      (watched, count, milliseconds, room))
+ALIAS(__open_2, open, -1, EMFILE, int, (const char* path, int flags), (path, flags))
+ALIAS(__open64_2, open, -1, EMFILE, int, (const char* path, int flags), (path, flags))
+ALIAS(__openat_2, open, -1, EMFILE, int, (int folder, const char* path, int flags), (folder, path, flags))
+ALIAS(__openat64_2, open, -1, EMFILE, int, (int folder, const char* path, int flags), (folder, path, flags))
+
 extern "C" int posix_spawn(pid_t* process, const char* path, const posix_spawn_file_actions_t* actions,
                            const posix_spawnattr_t* attributes, char* const* arguments,
                            char* const* surroundings) {

@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from program import PROGRAM, ROD  # noqa: E402
+from program import PROGRAM, ROD
 
 LIBRARY = os.path.abspath(os.environ["SELVAGE_FAULTS"])
 CALLS = ["write", "pwrite", "read", "pread", "fsync", "ftruncate", "rename", "renameat2", "linkat", "flock", "open", "mkdir", "mmap",

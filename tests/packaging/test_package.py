@@ -71,6 +71,7 @@ class Package(unittest.TestCase):
         files = self.inside("dpkg", "-L", "selvage").split()
         self.assertIn("/usr/bin/selvage", files)
         self.completes()
+        self.has_its_bill_of_materials()
         self.assertIn("/usr/lib/selvage/three.module.min.js", files)
         programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/")) and not name.endswith(".js")]
         self.assertEqual(len(programs), 11)
@@ -85,6 +86,16 @@ class Package(unittest.TestCase):
         for name in programs:
             self.assertFalse((self.root / name[1:]).exists(), name)
         self.assert_bare()
+
+    def has_its_bill_of_materials(self):
+        """The one that is beside the package; it has all packages that this one depends on."""
+        beside = self.package.with_suffix(".spdx.json").read_text()
+        self.assertEqual((self.root / "usr/share/doc/selvage/selvage.spdx.json").read_text(), beside)
+        stated = {package["name"] for package in json.loads(beside)["packages"]}
+        depends = subprocess.run(["dpkg-deb", "-f", self.package, "Depends"], check=True, capture_output=True, text=True).stdout
+        wanted = {word.split()[0] for word in depends.split(",")}
+        self.assertGreater(len(wanted), 5)
+        self.assertEqual(wanted - stated, set())
 
     def completes(self):
         """The manual page by man, and a word that bash completes once it has looked for the program's completions."""

@@ -18,8 +18,8 @@ from PIL import Image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 
-from browser import NO_WEBGL, Browser  # noqa: E402
-from program import SAMPLES, Case, environment  # noqa: E402
+from browser import NO_WEBGL, Browser
+from program import SAMPLES, Case, environment
 
 CLOTHS = ["weave_denim.txt", "weave_orthogonal.txt", "jersey.txt", "warpknit_tricot.txt", "braid_triaxial.txt", "ply2_plain.txt"]
 KEPT = os.environ.get("SELVAGE_SCREENSHOTS")

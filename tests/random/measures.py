@@ -2,13 +2,12 @@
 
 import math
 import pathlib
-import re
 import sys
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-import relaxed  # noqa: E402  the second evaluator of control grids
+import relaxed  # the second evaluator of control grids
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "inch": 25.4}
 GAUSS = np.polynomial.legendre.leggauss(9)  # exact for the volume where all weights are one, to degree 6

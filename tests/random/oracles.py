@@ -17,10 +17,10 @@ import tree
 
 TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path[1:1] = [str(TESTS / "cli"), str(TESTS / "formats" / "mesh")]
-import relaxed  # noqa: E402
-import unit_cell  # noqa: E402
-from program import run  # noqa: E402
-from tetrahedra import volumes_of  # noqa: E402
+import relaxed
+import unit_cell
+from program import run
+from tetrahedra import volumes_of
 
 SECONDS = 3600  # of one input and one command; nothing here needs a hundredth of it on a machine that does nothing else
 MESH_ERROR = 0.002  # of a yarn's volume, or a warning
@@ -169,7 +169,8 @@ class Judge:
         if not self.wants("trip", "volume", "section", "step", "occt", "overlaps seen", "relax measured", "overlaps told"):
             return
         again = self.convert([self.at("built", n, "igs") for n in names], "iges,txt", "again")
-        third = self.convert([self.at("again", n, "txt") for n in again], "iges", "third") if self.wants("trip") else {}
+        if self.wants("trip"):
+            self.convert([self.at("again", n, "txt") for n in again], "iges", "third")
         text = self.convert([self.at("built", n, "txt") for n in names], "txt,iges", "text") if self.wants("trip") else {}
         def same(name, oracle, kind, a, b, read=pathlib.Path.read_bytes):
             self.expect(name, oracle, a.exists() and b.exists() and read(a) == read(b), kind, f"{a} {b}")

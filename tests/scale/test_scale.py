@@ -17,7 +17,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 
-from program import PROGRAM, ROD, Case, environment  # noqa: E402
+from program import PROGRAM, ROD, Case, environment
 
 SCALE = float(os.environ.get("SELVAGE_SCALE", "1"))
 MEBIBYTE = 1 << 20

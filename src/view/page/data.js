@@ -59,4 +59,3 @@ function makeSvg(name, attributes = {}, text = '') {
 }
 
 const PREFERS_STILL = matchMedia('(prefers-reduced-motion: reduce)');
-const PREFERS_DARK = matchMedia('(prefers-color-scheme: dark)');

@@ -10,7 +10,6 @@ distance, both ways: our points against the formula, the formula's points agains
 """
 
 import json
-import math
 import re
 import sys
 

@@ -317,7 +317,7 @@ class Model:
         v = Values(e.values, e.what)
         place = place.after(self.own_place(e))
         if e.type == 143:
-            kind, surface = v.integer(), v.integer()
+            _, surface = v.integer(), v.integer()
             loops = [self.boundary_141(p, e) for p in v.integers(v.integer())]
         else:
             surface, outer, holes, first = v.integer(), v.integer(), v.integer(), v.integer()

@@ -13,7 +13,7 @@ fault and exits with 1.
 import math
 import sys
 
-from bspline import cross, distance_to, dot, flux, minus, planar_flux
+from bspline import cross, distance_to, flux, minus, planar_flux
 from iges_file import UNITS, Fault, check_pointers, curves_of, need, parse_directory, parse_global, read_entity
 from iges_file import split_sections
 
@@ -127,7 +127,7 @@ def check_solid(solid, entities):
 
 
 def read_model(path):
-    model, bodies = {"bodies": []}, None
+    model = {"bodies": []}
     with open(path, encoding="utf-8") as lines:
         for line in lines:
             word, _, rest = line.rstrip("\n").partition(" ")

@@ -2,19 +2,18 @@
 
 import json
 import pathlib
-import re
 import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import numpy as np  # noqa: E402
+import numpy as np
 
-from cloth import Chart, Cloth, lines_of  # noqa: E402
-from oracle import Machine, named_links  # noqa: E402
-from program import Case, SAMPLES, run  # noqa: E402
-from programs import LAID, Program, cable, plain  # noqa: E402
+from cloth import Chart, Cloth, lines_of
+from oracle import Machine, named_links
+from program import Case, SAMPLES, run
+from programs import LAID, Program, cable, plain
 
 
 class KnitoutCase(Case):

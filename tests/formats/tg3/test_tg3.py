@@ -9,8 +9,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from oracle import Model  # noqa: E402
-from program import Case  # noqa: E402
+from oracle import Model
+from program import Case
 
 ELLIPSE = '<Section type="CSectionEllipse" Width="2" Height="1"/>'
 LENS = '<Section type="CSectionLenticular" Width="2" Height="0.8" Distortion="0.1"/>'

@@ -9,8 +9,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from oracle import Wif  # noqa: E402
-from program import BAD, Case, PATH, SAMPLES, run  # noqa: E402
+from oracle import Wif
+from program import BAD, Case, PATH, SAMPLES, run
 
 OWN = pathlib.Path(__file__).resolve().parent / "files"
 # A folder of more files, where somebody has one and says so: those below a folder whose name begins with `bad` are refused.
