@@ -305,7 +305,7 @@ const Action actions[] = {
     {"request_key", false, DO(call(SYS_request_key, nullptr, nullptr, nullptr, 0))},
     {"settimeofday", false, [](const Place&) -> long {
        const timeval wrong{0, -1};
-       return ::settimeofday(&wrong, nullptr);
+       return call(SYS_settimeofday, &wrong, nullptr);
      }},
     {"clock_settime", false, DO(call(SYS_clock_settime, 99, nullptr))},
     {"clock_adjtime", false, DO(call(SYS_clock_adjtime, 99, nullptr))},
