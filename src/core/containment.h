@@ -1,9 +1,10 @@
 // What a process may still do that reads strangers' files, so that a flaw in a reader is not a door into the
 // machine.
 //
-// Landlock (Linux 5.13) bounds the file system, a filter of system calls (seccomp) takes away the network,
-// the start of programs and the kernel's rarer doors; neither can be undone, and what the process starts
-// inherits both. Descriptors that are open stay usable: pipes, standard output.
+// Landlock (Linux 5.13) bounds the file system. A filter of system calls (seccomp) leaves those that readers,
+// builders, meshers and writers need (core/call_filter.h): there are threads, but no processes and no
+// programs, no network, no signals to others. Neither can be undone. Descriptors that are open stay usable:
+// pipes, files.
 #pragma once
 
 #include <filesystem>
@@ -33,10 +34,9 @@ struct Allowed {
   // Folders with all that is in them. What is not there, or cannot be opened, is left out.
   std::vector<std::filesystem::path> read;   // or files
   std::vector<std::filesystem::path> write;  // to read, too, and to make, replace and remove files in
-  // Programs that may be started, with the dynamic loader. (The loader would start any program that can be
-  // read, in this same containment: that is no more than the process could do by itself.)
-  std::vector<std::filesystem::path> run;
   bool libraries = false;  // the system's, and what stands beside the program: modules can be opened
+  // A socket to which it may send messages, as to a process that starts programs for it; negative: none.
+  int requests = -1;
 };
 
 // Contains this process, which must have one thread only, for good, as far as `kernel` can. Error (internal):

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,8 +10,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
+#include "core/memory_files.h"
 #include "core/standard_output.h"
 #include "core/temporary.h"
 
@@ -34,6 +35,30 @@ Status sync_folder(const fs::path& folder) {
   if (is_done) return {};
   return error(Kind::io, fmt::format("cannot make the names of new files durable: {}", std::strerror(reason)),
                {.file = folder.string()});
+}
+
+// With the permissions of the file that it is to replace, `place`: to change them later takes a right that
+// contained processes do not have.
+int open_new(const fs::path& path, int flags, const fs::path& place) {
+  static std::mutex one_at_a_time;  // the mask is the whole process's
+  const std::scoped_lock lock(one_at_a_time);
+  struct stat old {};
+  if (::stat(place.c_str(), &old) != 0) return ::open(path.c_str(), flags, 0666);
+  const mode_t mask = ::umask(0);
+  const int descriptor = ::open(path.c_str(), flags, old.st_mode & 0777);
+  const int reason = errno;
+  ::umask(mask);
+  errno = reason;
+  return descriptor;
+}
+
+bool has_permissions(int descriptor, mode_t wanted) {
+  struct stat facts {};
+  return ::fstat(descriptor, &facts) == 0 && (facts.st_mode & 0777) == wanted;
+}
+
+Status copy(const OutputFile& from, OutputFile& to) {
+  return from.read_all([&](std::string_view bytes) { return to.write(bytes); });
 }
 
 }  // namespace
@@ -96,7 +121,7 @@ Status OutputFile::make_folder() {
 Status OutputFile::open_hidden() {
   for (;;) {
     hidden_ = folder_of(place_) / temporary_name(hidden_begin, hidden_end);
-    descriptor_ = ::open(hidden_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+    descriptor_ = open_new(hidden_, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, place_);
     if (descriptor_ >= 0 && hold(descriptor_)) return {};
     const int reason = errno;
     if (descriptor_ >= 0)
@@ -117,7 +142,7 @@ Result<OutputFile> OutputFile::create(const fs::path& target) {
   file.place_ = *place;
   if (Status fits = file.check_target(); !fits) return fits.error();
   if (Status made = file.make_folder(); !made) return made.error();
-  file.descriptor_ = ::open(folder_of(file.place_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  file.descriptor_ = open_new(folder_of(file.place_), O_TMPFILE | O_RDWR | O_CLOEXEC, file.place_);
   const bool has_none = file.descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL);
   if (file.descriptor_ < 0 && !has_none) return file.io_error("cannot write");
   // An unnamed file gets its name through /proc, which may not be there.
@@ -140,7 +165,7 @@ Result<OutputFile> OutputFile::in_memory() {
   OutputFile file;
   file.form_ = Form::memory;
   file.target_ = "<memory>";
-  file.descriptor_ = ::memfd_create("selvage", MFD_CLOEXEC);
+  file.descriptor_ = take_memory_file();
   if (file.descriptor_ < 0) return file.io_error("cannot reserve memory for the output");
   return file;
 }
@@ -229,8 +254,7 @@ Status OutputFile::set_target(const fs::path& target) {
   }
   Result<OutputFile> there = create(target);
   if (!there) return there.error();
-  const auto copy = [&](std::string_view bytes) { return there->write(bytes); };
-  if (Status copied = read_all(copy); !copied) return copied;
+  if (Status copied = copy(*this, *there); !copied) return copied;
   *this = std::move(*there);
   return {};
 }
@@ -265,8 +289,16 @@ Status OutputFile::stage() {
   struct stat old {};
   const bool replaces = ::stat(place_.c_str(), &old) == 0;
   if (!replaces && errno != ENOENT) return io_error("cannot write");
-  if (replaces && ::fchmod(descriptor_, old.st_mode & 0777) != 0)
-    return io_error("cannot keep the permissions");
+  const mode_t permissions = old.st_mode & 0777;
+  // They are those of the file that was in the target's place when this one was made.
+  if (replaces && !has_permissions(descriptor_, permissions) && ::fchmod(descriptor_, permissions) != 0) {
+    Result<OutputFile> anew = create(target_);
+    if (!anew) return anew.error();
+    if (Status copied = copy(*this, *anew); !copied) return copied;
+    *this = std::move(*anew);
+    errno = EPERM;
+    if (!has_permissions(descriptor_, permissions)) return io_error("cannot keep the permissions");
+  }
   if (::fsync(descriptor_) != 0) return io_error("cannot write");
   return replaces && hidden_.empty() ? hide() : Status();
 }

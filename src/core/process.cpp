@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/sanitized.h"
+#include "core/written.h"
 
 namespace selvage {
 
@@ -34,33 +35,23 @@ struct PacketHead {
 constexpr std::size_t head_bytes = 5;
 // Exit status of a job whose packets do not reach the parent.
 constexpr int unheard_status = 120;
+// Of one that would send a packet beyond the limit of packets.
+constexpr int oversized_status = 119;
 // And of one whose limits could not be set.
 constexpr int unlimited_status = 121;
 
-bool write_all(int descriptor, const char* bytes, std::size_t size) {
-  while (size > 0) {
-    const ssize_t put = ::write(descriptor, bytes, size);
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return false;
-    bytes += put;
-    size -= static_cast<std::size_t>(put);
-  }
-  return true;
-}
-
-sigset_t watched_signals() {
-  sigset_t set;
-  ::sigemptyset(&set);
-  for (int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) ::sigaddset(&set, number);
-  return set;
+// After which the run ends.
+void add_interruptions(sigset_t& set) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&set, number);
 }
 
 struct Running {
   std::size_t job = 0;
   pid_t pid = -1;
   int pipe = -1;
-  bool at_end = false;   // of the pipe
-  bool unheard = false;  // something that it sent could not be read
+  JobStreams streams;
+  bool at_end = false;  // of the pipe
+  int unheard = 0;      // why something that it sent could not be read, or passed on: errno
   bool timed_out = false;
   Clock::time_point deadline = Clock::time_point::max();
   std::string inbox;  // bytes of a packet that is not complete yet
@@ -79,7 +70,10 @@ void set_limit(__rlimit_resource_t resource, rlim_t amount) {
 class Runner {
  public:
   explicit Runner(const JobPool& pool) : pool_(pool) {
-    const sigset_t watched = watched_signals();
+    sigset_t watched;
+    ::sigemptyset(&watched);
+    add_interruptions(watched);
+    ::sigaddset(&watched, SIGCHLD);
     ::sigprocmask(SIG_BLOCK, &watched, &old_mask_);
     // Where the caller had children ignored, the kernel would take ours away without a word.
     struct sigaction usual {};
@@ -118,21 +112,20 @@ class Runner {
   // False: no room for another process now, try again when one has ended.
   bool start(std::size_t job) {
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return refuse(job, errno);
+    JobStreams streams(pool_.streams ? pool_.streams(job) : UsedStreams{});
+    if (!streams.is_open() || ::pipe2(ends.data(), O_CLOEXEC) != 0) return refuse(job, errno);
     const pid_t parent = ::getpid();
     // The parent's end alone never waits.
     const pid_t pid = ::fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0 ? ::fork() : -1;
     const int reason = errno;
-    if (pid == 0) live_as_child(job, ends[1], parent);
+    if (pid == 0) live_as_child(job, ends[1], streams, parent);
     ::close(ends[1]);
+    streams.leave();
     if (pid < 0) {
       ::close(ends[0]);
       return refuse(job, reason);
     }
-    Running child;
-    child.job = job;
-    child.pid = pid;
-    child.pipe = ends[0];
+    Running child{.job = job, .pid = pid, .pipe = ends[0], .streams = std::move(streams), .inbox = {}};
     if (pool_.seconds > 0)
       child.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                           std::chrono::duration<double>(std::min(pool_.seconds, 1e8)));
@@ -147,11 +140,16 @@ class Runner {
     return true;
   }
 
-  [[noreturn]] void live_as_child(std::size_t job, int pipe, pid_t parent) {
+  [[noreturn]] void live_as_child(std::size_t job, int pipe, JobStreams& streams, pid_t parent) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent) ::_exit(unlimited_status);
-    // What other jobs say is not this one's to read.
+    // What other jobs send is not this one's to read, nor what the caller had open. (Where the kernel cannot
+    // close all, before Linux 5.9, that stays.)
     ::close(signals_);
     for (const Running& other : running_) ::close(other.pipe);
+    if (!streams.enter()) ::_exit(unlimited_status);
+    close_above(STDERR_FILENO, pipe);
+    // Who interrupts the run, as by Ctrl-C, signals its whole process group; the parent alone decides then.
+    add_interruptions(old_mask_);
     ::sigprocmask(SIG_SETMASK, &old_mask_, nullptr);
     if (pool_.mebibytes > 0 && !sanitized)
       set_limit(RLIMIT_AS, static_cast<rlim_t>(std::min(pool_.mebibytes, 1e12) * 1048576.0));
@@ -160,19 +158,29 @@ class Runner {
     ::_exit(pool_.run(job, Channel(pipe)));
   }
 
+  static void close_above(int last_kept, int also_kept) {
+    const auto first = static_cast<unsigned>(last_kept) + 1, kept = static_cast<unsigned>(also_kept);
+    if (kept > first) ::close_range(first, kept - 1, 0);
+    ::close_range(kept + 1, ~0U, 0);
+  }
+
   void wait() {
     std::vector<pollfd> watched = {{signals_, POLLIN, 0}};
     double seconds = pool_.tick ? pool_.tick() : 3600;
     for (const Running& child : running_) {
       // A pipe at its end would wake us again and again until the kernel has taken the child down.
       watched.push_back({child.at_end ? -1 : child.pipe, POLLIN, 0});
+      for (const int stream : child.streams.waiting()) watched.push_back({stream, POLLIN, 0});
       if (child.deadline != Clock::time_point::max())
         seconds = std::min(seconds, std::chrono::duration<double>(child.deadline - Clock::now()).count());
     }
     const int milliseconds = static_cast<int>(std::clamp(seconds * 1000.0 + 1.0, 0.0, 3.6e6));
     // Where the kernel cannot wait for us, we look again and again, with pauses.
     if (::poll(watched.data(), watched.size(), milliseconds) < 0 && errno != EINTR) ::usleep(10'000);
-    for (Running& child : running_) read_packets(child);
+    for (Running& child : running_) {
+      read_packets(child);
+      if (child.unheard != 0) ::kill(child.pid, SIGKILL);
+    }
     read_signals();
     reap();
     const Clock::time_point now = Clock::now();
@@ -183,22 +191,38 @@ class Runner {
     }
   }
 
+  // Some of what is there: a job that sends without end shall not keep the others waiting.
   void read_packets(Running& child) {
+    constexpr int most_blocks = 64;
     std::array<char, 65536> buffer;
-    for (;;) {
+    for (int i = 0; i < most_blocks && !child.at_end && child.unheard == 0; ++i) {
       const ssize_t got = ::read(child.pipe, buffer.data(), buffer.size());
       if (got < 0 && errno == EINTR) continue;
-      child.at_end = got == 0;
-      if (got < 0 && errno != EAGAIN) child.at_end = child.unheard = true;
+      if (got < 0 && errno == EAGAIN) break;
+      child.at_end = got <= 0;
+      if (got < 0) child.unheard = errno;
       if (got <= 0) break;
       child.inbox.append(buffer.data(), static_cast<std::size_t>(got));
+      take_packets(child);
     }
+    if (!child.streams.relay()) child.unheard = errno;
+  }
+
+  void take_packets(Running& child) {
     std::size_t begin = 0;
     while (child.inbox.size() - begin >= head_bytes) {
       PacketHead head;
       std::memcpy(&head.size, child.inbox.data() + begin, sizeof head.size);
       head.kind = child.inbox[begin + sizeof head.size];
-      if (child.inbox.size() - begin - head_bytes < head.size) break;
+      if (head.size > most_packet_bytes) {
+        child.unheard = EMSGSIZE;
+        child.inbox = {};
+        return;
+      }
+      if (child.inbox.size() - begin - head_bytes < head.size) {
+        child.inbox.reserve(head_bytes + head.size);
+        break;
+      }
       pool_.received(child.job, head.kind,
                      std::string_view(child.inbox).substr(begin + head_bytes, head.size));
       begin += head_bytes + head.size;
@@ -223,6 +247,7 @@ class Runner {
       const int reason = gone < 0 ? errno : 0;
       Running child = std::move(running_[i]);
       running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
+      // All that it left: no more than the pipe holds, but for what another process adds that has it open.
       read_packets(child);
       ::close(child.pipe);
       pool_.finished(child.job, reason != 0 ? JobEnd{JobEnd::How::unheard, reason} : end_of(child, status));
@@ -230,13 +255,15 @@ class Runner {
   }
 
   static JobEnd end_of(const Running& child, int status) {
+    if (child.unheard != 0) return {JobEnd::How::unheard, child.unheard};
     if (!WIFEXITED(status))
       return {
           child.timed_out || WTERMSIG(status) == SIGALRM ? JobEnd::How::timed_out : JobEnd::How::signalled,
           WTERMSIG(status)};
     const int value = WEXITSTATUS(status);
     if (value == unlimited_status) return {JobEnd::How::not_started, EPERM};
-    if (value == unheard_status || child.unheard) return {JobEnd::How::unheard, EIO};
+    if (value == unheard_status) return {JobEnd::How::unheard, EIO};
+    if (value == oversized_status) return {JobEnd::How::unheard, EMSGSIZE};
     return {JobEnd::How::exited, value};
   }
 
@@ -268,7 +295,8 @@ void Channel::send(char kind, std::string_view bytes) const {
   std::memcpy(head.data(), &size, sizeof size);
   head[sizeof size] = kind;
   // Nothing that this process does from here on would be heard of.
-  if (size != bytes.size() || !write_all(descriptor_, head.data(), head.size()) ||
+  if (bytes.size() > most_packet_bytes) ::_exit(oversized_status);
+  if (!write_all(descriptor_, head.data(), head.size()) ||
       !write_all(descriptor_, bytes.data(), bytes.size()))
     ::_exit(unheard_status);
 }
@@ -291,6 +319,8 @@ std::string describe(const JobEnd& end, double seconds, std::string_view memory)
     case JobEnd::How::not_started:
       return fmt::format("could not be started: {}", std::strerror(end.status));
     case JobEnd::How::unheard:
+      if (end.status == EMSGSIZE)
+        return fmt::format("was stopped: its results take more than {} MB", most_packet_bytes >> 20U);
       return fmt::format("could not tell what came of it: {}", std::strerror(end.status));
     case JobEnd::How::signalled:
       break;

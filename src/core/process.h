@@ -1,7 +1,9 @@
 // Jobs in processes of their own: one that crashes, hangs or eats memory costs only itself.
 //
 // The parent stays small (it forks, so everything that it holds is shared, and nothing heavy is loaded in
-// it); each job runs in a forked child that talks back through a pipe. No threads may run in the parent.
+// it); each job runs in a forked child that talks back through a pipe, and has of what was open its standard
+// streams only (core/job_streams.h). SIGINT, SIGTERM and SIGHUP are the parent's to answer: they do not end a
+// child. No threads may run in the parent.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +12,19 @@
 #include <string_view>
 
 #include "core/diagnostics.h"
+#include "core/job_streams.h"
 
 namespace selvage {
+
+// Of a packet. A job that sends a longer one is stopped: what goes astray in it shall not fill the parent.
+inline constexpr std::size_t most_packet_bytes = std::size_t{128} << 20;
 
 // The child's end of the pipe: packets of a one-letter kind and bytes.
 class Channel {
  public:
   explicit Channel(int descriptor) : descriptor_(descriptor) {}
-  // A packet that cannot be sent ends the process: the parent then counts the job as failed (How::unheard).
+  // A packet that cannot be sent, or is too long, ends the process: the parent then counts the job as failed
+  // (How::unheard).
   void send(char kind, std::string_view bytes) const;
 
  private:
@@ -30,7 +37,8 @@ struct JobEnd {
     signalled,    // status: the signal's number
     timed_out,    // killed at its time limit, or that of end_after()
     not_started,  // status: errno of fork or pipe
-    unheard,      // its packets, or its end, did not reach the parent; status: errno
+    unheard,  // its packets, or its end, did not reach the parent; status: errno (EMSGSIZE: a packet was too
+              // long)
   };
   How how = How::exited;
   int status = 0;
@@ -49,6 +57,8 @@ struct JobPool {
   double seconds = 0;       // wall-clock limit a job; 0: none
   double mebibytes = 0;     // limit of a job's address space; 0: none
 
+  // In the parent, before a job is started; none: no job uses standard input or output.
+  std::function<UsedStreams(std::size_t job)> streams;
   // In the child; the value returned (0-255) becomes JobEnd::status. Must not throw.
   std::function<int(std::size_t job, const Channel& channel)> run;
   // In the parent.

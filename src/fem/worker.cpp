@@ -1,189 +1,49 @@
 #include "fem/worker.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/bounds.h"
 #include "fem/mesh_check.h"
 #include "fem/tetgen_worker/protocol.h"
+#include "fem/worker_process.h"
 
 namespace selvage::fem {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  [[nodiscard]] int number() const { return number_; }
-  [[nodiscard]] bool is_open() const { return number_ >= 0; }
-
- private:
-  int number_ = -1;
-};
-
-Message system_error(std::string_view what) {
-  return error(Kind::internal, fmt::format("cannot {} for the mesh worker: {}", what, std::strerror(errno)));
-}
-
-bool write_all(int to, const void* from, std::size_t size) {
-  const auto* bytes = static_cast<const char*>(from);
-  while (size > 0) {
-    const ssize_t put = ::write(to, bytes, size);
-    if (put < 0 && errno == EINTR) continue;
-    if (put <= 0) return false;
-    bytes += put;
-    size -= static_cast<std::size_t>(put);
-  }
-  return true;
-}
-
 double relative_epsilon(const TetgenJob& job) {
   if (job.smallest_feature <= 0) return 1e-8;
   return std::clamp(1e-5 * job.smallest_feature / bounds_of(job.points).diagonal().norm(), 1e-13, 1e-8);
 }
 
-// The request in an anonymous file: it need not be fed while the worker runs.
-Result<Descriptor> write_request(const TetgenJob& job, const TetgenLimits& limits, bool look) {
-  Descriptor file(::memfd_create("selvage-tetgen request", MFD_CLOEXEC));
-  if (!file.is_open()) return system_error("make a request");
+RequestHead head_of(const TetgenJob& job, const TetgenLimits& limits, bool look) {
   RequestHead head;
   head.points = job.points.size();
   head.triangles = job.triangles.size();
   head.epsilon = relative_epsilon(job);
   head.memory = limits.memory * 1024 * 1024;
   head.cpu_seconds = std::ceil(limits.timeout) + 1;
-  head.parent = ::getpid();
   head.look = look ? 1 : 0;
-  static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::int32_t));
-  if (!write_all(file.number(), &head, sizeof head) ||
-      !write_all(file.number(), job.points.data(), job.points.size_bytes()) ||
-      !write_all(file.number(), job.triangles.data(), job.triangles.size_bytes()) ||
-      ::lseek(file.number(), 0, SEEK_SET) != 0)
-    return system_error("write a request");
-  return file;
+  return head;
 }
 
-struct Running {
-  pid_t process = -1;
-  Descriptor answers;  // the reading end of its standard output
-  Descriptor words;    // its standard error, an anonymous file
-};
-
-Result<Running> start(const std::filesystem::path& program, const Descriptor& request) {
-  Running result;
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return system_error("make a pipe");
-  result.answers = Descriptor(ends[0]);
-  const Descriptor output(ends[1]);
-  result.words = Descriptor(::memfd_create("selvage-tetgen words", MFD_CLOEXEC));
-  if (!result.words.is_open()) return system_error("make a file");
-
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  int failure = 0;
-  const auto step = [&](int outcome) { failure = failure == 0 ? outcome : failure; };
-  step(::posix_spawn_file_actions_adddup2(&actions, request.number(), STDIN_FILENO));
-  step(::posix_spawn_file_actions_adddup2(&actions, output.number(), STDOUT_FILENO));
-  step(::posix_spawn_file_actions_adddup2(&actions, result.words.number(), STDERR_FILENO));
-  // A process group of its own, so that Ctrl-C reaches the program only, which decides.
-  step(::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK));
-  step(::posix_spawnattr_setpgroup(&attributes, 0));
-  step(::posix_spawnattr_setsigmask(&attributes, &none));
-  std::string name = program.string();
-  std::array<char*, 2> arguments = {name.data(), nullptr};
-  if (failure == 0)
-    failure = ::posix_spawn(&result.process, name.c_str(), &actions, &attributes, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  ::posix_spawnattr_destroy(&attributes);
-  if (failure != 0) {
-    errno = failure;
-    return system_error(fmt::format("start '{}'", name));
-  }
-  return result;
-}
-
-struct Ended {
-  bool timed_out = false;
-  int status = 0;  // of waitpid
-  std::string answer;
-  std::string words;  // the last of what TetGen printed
-};
-
-enum class Heard {
-  all,
-  not_yet,
-  nothing,  // it cannot be read: errno says why
-};
-
-// Adds to the answer what comes until its end or the deadline.
-Heard read_until(const Running& running, Clock::time_point deadline, std::string& answer) {
-  std::vector<char> block(1 << 20);
-  for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    pollfd watched{running.answers.number(), POLLIN, 0};
-    const int ready =
-        left <= 0 ? 0 : ::poll(&watched, 1, static_cast<int>(std::min<long long>(left, 60'000)));
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready == 0 && Clock::now() < deadline) continue;
-    if (ready < 0) return Heard::nothing;
-    if (ready == 0) return Heard::not_yet;
-    const ssize_t got = ::read(running.answers.number(), block.data(), block.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return Heard::nothing;
-    if (got == 0) return Heard::all;
-    answer.append(block.data(), static_cast<std::size_t>(got));
-  }
-}
-
-// Its answer has ended, or it is killed; the process is gone afterwards.
-Ended finish(const Running& running, bool has_ended, std::string answer) {
-  Ended result;
-  result.answer = std::move(answer);
-  result.timed_out = !has_ended;
-  // A worker that closed its output is done or dying; one that hangs there is not waited for.
-  for (int tries = 0; !result.timed_out && tries < 2000; ++tries) {
-    const pid_t gone = ::waitpid(running.process, &result.status, WNOHANG);
-    if (gone == running.process || (gone < 0 && errno != EINTR)) break;
-    ::usleep(1000);
-    if (tries == 1999) result.timed_out = true;
-  }
-  if (result.timed_out) {
-    ::kill(-running.process, SIGKILL);
-    while (::waitpid(running.process, &result.status, 0) < 0 && errno == EINTR) {
-    }
-  }
-  std::array<char, 400> last{};
-  const off_t size = ::lseek(running.words.number(), 0, SEEK_END);
-  const off_t from = std::max<off_t>(0, size - static_cast<off_t>(last.size()));
-  const ssize_t got = ::pread(running.words.number(), last.data(), last.size(), from);
-  if (got > 0) result.words.assign(last.data(), static_cast<std::size_t>(got));
-  return result;
+template <class T>
+std::string_view bytes_of(std::span<const T> items) {
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes
+  return {reinterpret_cast<const char*>(items.data()), items.size_bytes()};
 }
 
 // TetGen's own words on one line, as an addition to a message.
@@ -196,7 +56,7 @@ std::string quoted(std::string words) {
 
 constexpr std::string_view change_size = "try another --size, or look at the yarn with 'selvage check'";
 
-Message judge_end(const Ended& ended, const TetgenLimits& limits) {
+Message judge_end(const WorkerEnd& ended, const TetgenLimits& limits) {
   if (ended.timed_out)
     return error(Kind::limit, fmt::format("meshing took longer than {} s; allow more with --timeout, or "
                                           "choose a coarser --size",
@@ -225,7 +85,7 @@ std::string_view what_failed(Trial trial) {
   return "an unknown trial";
 }
 
-Message judge_refusal(const AnswerHead& head, const Ended& ended, const TetgenLimits& limits) {
+Message judge_refusal(const AnswerHead& head, const WorkerEnd& ended, const TetgenLimits& limits) {
   if (head.outcome == Outcome::memory)
     return error(Kind::limit,
                  fmt::format("meshing needs more than {} MiB; allow more with --memory, or choose "
@@ -279,7 +139,7 @@ Message crossing(const TetgenJob& job, const std::vector<Triangle>& triangles) {
       .at_point(at);
 }
 
-Result<TetMesh> read_answer(const TetgenJob& job, const Ended& ended, const TetgenLimits& limits) {
+Result<TetMesh> read_answer(const TetgenJob& job, const WorkerEnd& ended, const TetgenLimits& limits) {
   AnswerHead head;
   if (ended.answer.size() < sizeof head) return judge_end(ended, limits);
   std::memcpy(&head, ended.answer.data(), sizeof head);
@@ -308,29 +168,27 @@ Result<TetMesh> read_answer(const TetgenJob& job, const Ended& ended, const Tetg
 class Run {
  public:
   Run(const std::filesystem::path& program, const TetgenJob& job, const TetgenLimits& limits, bool look)
-      : job_(job), limits_(limits) {
-    Result<Descriptor> request = write_request(job, limits, look);
-    if (!request) {
-      failure_ = request.error();
-      return;
-    }
-    Result<Running> running = start(program, *request);
-    if (!running)
-      failure_ = running.error();
+      : program_(program), job_(job), limits_(limits), head_(head_of(job, limits, look)) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::int32_t));
+    Result<WorkerProcess> process = WorkerProcess::start(
+        program,
+        {bytes_of(std::span<const RequestHead>(&head_, 1)), bytes_of(job.points), bytes_of(job.triangles)});
+    if (!process)
+      failure_ = process.error();
     else
-      running_ = std::move(*running);
+      process_ = std::move(*process);
   }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
   ~Run() {
-    if (running_) finish(*running_, false, {});
+    if (process_) process_->finish(false);
   }
   // True when the answer is whole, or there will be none.
   bool wait(Clock::time_point deadline) {
-    if (running_ && !has_ended_) {
-      const Heard heard = read_until(*running_, deadline, answer_);
-      if (heard == Heard::nothing) failure_ = system_error("read an answer");
-      has_ended_ = heard == Heard::all;
+    if (process_ && !has_ended_ && !failure_) {
+      const WorkerProcess::Heard heard = process_->exchange(deadline);
+      if (heard == WorkerProcess::Heard::nothing) failure_ = system_error("exchange data");
+      has_ended_ = heard == WorkerProcess::Heard::all;
     }
     return failure_ || has_ended_;
   }
@@ -338,17 +196,22 @@ class Run {
   Result<TetMesh> answer(Clock::time_point deadline) {
     wait(deadline);
     if (failure_) return *failure_;
-    const Ended ended = finish(*running_, has_ended_, std::move(answer_));
-    running_.reset();
+    const WorkerEnd ended = process_->finish(has_ended_);
+    process_.reset();
+    if (ended.not_started != 0) {
+      errno = ended.not_started;
+      return system_error(fmt::format("start '{}'", program_.string()));
+    }
     return ended.timed_out ? judge_end(ended, limits_) : read_answer(job_, ended, limits_);
   }
 
  private:
+  const std::filesystem::path& program_;
   const TetgenJob& job_;
   const TetgenLimits& limits_;
+  const RequestHead head_;
   std::optional<Message> failure_;
-  std::optional<Running> running_;
-  std::string answer_;
+  std::optional<WorkerProcess> process_;
   bool has_ended_ = false;
 };
 

@@ -16,6 +16,7 @@
 
 #include "core/clock.h"
 #include "core/console.h"
+#include "core/memory_files.h"
 #include "core/process.h"
 #include "core/progress.h"
 #include "core/readable.h"
@@ -54,6 +55,8 @@ constexpr double report_share = 0.05;
 // Bytes of an input's messages. Workers say few (core/tally.h); what is wrong with one shall not eat memory
 // here.
 constexpr std::size_t most_kept = 1U << 20;
+// And of its results and its report, which are whole or not there.
+constexpr std::size_t most_results = most_packet_bytes;
 
 class Batch {
  public:
@@ -74,6 +77,8 @@ class Batch {
   struct Work {
     std::string messages, results;
     std::size_t left_out = 0;  // messages beyond what is kept
+    std::size_t kept = 0;      // bytes of results and reports
+    bool overflows = false;    // there were more than are kept
     bool ended = false;
     std::string reader;  // the format whose library reads the input now; empty: none
   };
@@ -132,6 +137,11 @@ Status write_whole(const std::string& place, const std::string& text) {
   return file->commit();
 }
 
+UsedStreams streams_of(const PlannedInput& planned) {
+  return {.input = planned.input.path == "-" || planned.input.other == "-",
+          .output = std::ranges::any_of(planned.outputs, &PlannedOutput::to_standard_output)};
+}
+
 int Batch::run_one(std::size_t index, const Channel& channel) const {
   const PlannedInput planned = plan_.at(index);
   const Input& input = planned.input;
@@ -142,6 +152,9 @@ int Batch::run_one(std::size_t index, const Channel& channel) const {
   std::vector<fs::path> places;
   for (const PlannedOutput& output : planned.outputs)
     if (!output.to_standard_output) std::ranges::move(places_of(output), std::back_inserter(places));
+  // Where a contained process's output to standard output waits until it is whole. glTF has the most files.
+  constexpr std::size_t most_files = 12;
+  if (streams_of(planned).output) reserve_memory_files(most_files);
   if (const Status contained = contain_job(options_, std::array{input.path, input.other}, places);
       !contained) {
     job.say(contained.error());
@@ -157,6 +170,11 @@ std::string Batch::entry_of_earlier(const std::string& path) const {
 
 void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
   Work& work = work_[job];
+  if (kind == packet::result || kind == packet::report) {
+    work.kept += bytes.size();
+    work.overflows = work.overflows || work.kept > most_results;
+    if (work.overflows) return;
+  }
   if (kind == packet::message) {
     if (work.messages.size() > most_kept) {
       ++work.left_out;
@@ -227,6 +245,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
     reason = fmt::format("ended unexpectedly, with status {} (it could not take more memory than {})",
                          end.status, memory_limit(options_));
   }
+  if (reason.empty() && work.overflows) reason = describe({JobEnd::How::unheard, EMSGSIZE}, 0, {});
   if (!reason.empty()) {
     const bool is_alone = plan_.inputs().at(job).other.empty();
     const bool is_killed = end.how == JobEnd::How::signalled && is_crash(end.status);
@@ -375,6 +394,7 @@ int Batch::run(const std::vector<Message>& missing) {
   pool.at_once = available_cores(options_);
   pool.seconds = options_.timeout;
   pool.mebibytes = options_.memory;
+  pool.streams = [this](std::size_t job) { return streams_of(plan_.at(job)); };
   pool.run = [this](std::size_t job, const Channel& channel) { return run_one(job, channel); };
   pool.received = [this](std::size_t job, char kind, std::string_view bytes) { receive(job, kind, bytes); };
   pool.finished = [this](std::size_t job, const JobEnd& end) { finish(job, end); };

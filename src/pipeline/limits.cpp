@@ -14,6 +14,7 @@
 #include "core/module.h"
 #include "core/output.h"
 #include "core/process.h"
+#include "fem/worker_process.h"
 
 namespace selvage::pipeline {
 
@@ -109,8 +110,14 @@ Status contain_job(const Options& options, std::span<const std::string> inputs,
     allowed.write.push_back(folder);
   }
   if (!options.scratch.empty()) allowed.write.emplace_back(options.scratch);
-  if (options.command == Command::mesh)
-    if (const Result<fs::path> mesher = find_worker("selvage-tetgen")) allowed.run.push_back(*mesher);
+  if (options.command == Command::mesh) {
+    // Where it is missing that is told when it is needed.
+    if (const Result<fs::path> mesher = find_worker("selvage-tetgen")) {
+      const Result<int> starter = fem::ready_starter(*mesher);
+      if (!starter) return starter.error();
+      allowed.requests = *starter;
+    }
+  }
   return contain(allowed, this_kernel());
 }
 

@@ -163,6 +163,16 @@ extern "C" int posix_spawn(pid_t* process, const char* path, const posix_spawn_f
                                       : itself(process, path, actions, attributes, arguments, surroundings);
 }
 
+// The page of the plan stays open, for programs that are started later.
+extern "C" int close_range(unsigned first, unsigned last, int flags) noexcept {
+  static auto* const itself = real("close_range", &close_range);
+  const char* page = std::getenv("FAULT_PAGE");
+  const unsigned kept = page != nullptr ? static_cast<unsigned>(std::atoi(page)) : 0;
+  if (kept < first || kept > last) return itself(first, last, flags);
+  if (kept > first && itself(first, kept - 1, flags) != 0) return -1;
+  return kept < last ? itself(kept + 1, last, flags) : 0;
+}
+
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*run)(void*),
                               void* argument) noexcept {
   static auto* const itself = real("pthread_create", &pthread_create);

@@ -1,5 +1,6 @@
-// selvage-tetgen: one job of TetGen in a process of its own, with limits. See protocol.h for what goes in and
-// out.
+// selvage-tetgen PARENT: one job of TetGen in a process of its own, with limits, which ends with its parent,
+// the process of that number. See protocol.h for what goes in and out. `selvage-tetgen start PROGRAM` starts
+// such processes: see starter.h.
 //
 // TetGen 1.5.0 may end in a segmentation fault, run for hours or eat all memory; all of that stays here. It
 // meshes, or only looks for crossing facets (TetGen's -d, which does not crash on them).
@@ -12,6 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <string>
 #include <vector>
@@ -20,6 +22,7 @@
 #include "core/sanitized.h"
 #include "fem/tetgen_worker/job.h"
 #include "fem/tetgen_worker/protocol.h"
+#include "fem/tetgen_worker/starter.h"
 
 namespace selvage::fem {
 namespace {
@@ -77,8 +80,6 @@ bool read_job(const RequestHead& head, Job& job) {
 int run() {
   RequestHead head;
   if (!read_all(&head, sizeof head) || head.magic != request_magic) leave(Outcome::bad_request, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (head.parent != 0 && ::getppid() != head.parent) return 1;  // it died before the line above
   if (!sanitized) limit(RLIMIT_AS, head.memory);
   limit(RLIMIT_CPU, head.cpu_seconds);
   const rlimit no_core{0, 0};
@@ -122,8 +123,11 @@ void leave(Outcome outcome, int code) {
 
 }  // namespace selvage::fem
 
-int main() {
+int main(int count, char** words) {
   using namespace selvage::fem;
+  if (count == 3 && std::strcmp(words[1], start_word) == 0) return start_programs(words[2]);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (count != 2 || std::to_string(::getppid()) != words[1]) return 1;  // it died before the line above
   answer_descriptor = ::dup(STDOUT_FILENO);
   if (answer_descriptor < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return 1;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);

@@ -19,11 +19,10 @@ struct RequestHead {
   std::uint64_t magic = request_magic;
   std::uint64_t points = 0;
   std::uint64_t triangles = 0;
-  double epsilon = 1e-8;    // TetGen's relative tolerance (of the box's diagonal)
-  double memory = 0;        // bytes of address space; 0: no limit
-  double cpu_seconds = 0;   // 0: no limit
-  std::int64_t parent = 0;  // process id of the program; 0: not watched
-  std::uint64_t look = 0;   // 1: no mesh is wanted, but the facets that cross; none: a mesh without anything
+  double epsilon = 1e-8;   // TetGen's relative tolerance (of the box's diagonal)
+  double memory = 0;       // bytes of address space; 0: no limit
+  double cpu_seconds = 0;  // 0: no limit
+  std::uint64_t look = 0;  // 1: no mesh is wanted, but the facets that cross; none: a mesh without anything
 };
 
 enum class Outcome : std::int32_t {

@@ -119,6 +119,93 @@ TEST(Process, UnheardResultsAreNoSuccess) {
   EXPECT_NE(describe(outcome.ends[0], 0, ""), "");
 }
 
+// Who interrupts a run, as by Ctrl-C, signals its whole group: a worker that died of it would be told as a
+// crash.
+TEST(Process, SignalsOfInterruptionAreTheParents) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const Outcome outcome = run_all(1, 1, [&](std::size_t, const Channel&) {
+      ::kill(::getpid(), number);
+      return 7;
+    });
+    EXPECT_EQ(outcome.ends[0].how, JobEnd::How::exited) << number;
+    EXPECT_EQ(outcome.ends[0].status, 7) << number;
+  }
+}
+
+TEST(Process, GroupIsInterrupted) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EQ(in_a_child([&] {
+                ::setpgid(0, 0);
+                std::size_t told = 0;
+                JobPool pool;
+                pool.count = 2;
+                pool.at_once = 2;
+                pool.run = [&](std::size_t job, const Channel&) {
+                  if (job == 1) ::kill(0, number);
+                  for (;;) ::pause();
+                  return 0;
+                };
+                pool.finished = [](std::size_t, const JobEnd&) { ::_exit(1); };
+                pool.interrupted = [&](std::size_t) { ++told; };
+                const Result<PoolEnd> end = run_jobs(pool);
+                return end.ok() && *end == PoolEnd::interrupted && told == 2 ? 0 : 2;
+              }),
+              0)
+        << number;
+  }
+}
+
+TEST(Process, StandardStreamsAreOwn) {
+  EXPECT_EQ(in_a_child([] {
+              std::array<int, 2> ends{};
+              if (::pipe(ends.data()) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) return 1;
+              JobPool pool;
+              pool.count = 2;
+              pool.streams = [](std::size_t job) { return UsedStreams{.input = false, .output = job == 1}; };
+              pool.run = [](std::size_t job, const Channel&) {
+                char byte = 0;
+                if (::read(STDIN_FILENO, &byte, 1) != 0) return 1;  // /dev/null
+                return ::write(STDOUT_FILENO, job == 1 ? "b" : "a", 1) == 1 ? 0 : 2;
+              };
+              int wrong = 0;
+              pool.received = [](std::size_t, char, std::string_view) {};
+              pool.finished = [&](std::size_t, const JobEnd& end) { wrong += end.status; };
+              if (!run_jobs(pool).ok() || wrong != 0) return 2;
+              std::array<char, 4> written{};
+              return ::read(ends[0], written.data(), written.size()) == 1 && written[0] == 'b' ? 0 : 3;
+            }),
+            0);
+}
+
+TEST(Process, WhatTheCallerHadOpenIsClosed) {
+  const int open = ::open("/dev/null", O_RDONLY);
+  const Outcome outcome =
+      run_all(1, 1, [&](std::size_t, const Channel&) { return ::fcntl(open, F_GETFD) < 0 ? 0 : 1; });
+  ::close(open);
+  EXPECT_EQ(outcome.ends[0].status, 0);
+}
+
+// Neither what is sent nor what is announced fills the parent.
+TEST(Process, PacketsHaveALimit) {
+  EXPECT_EQ(in_a_child([] {
+              const Outcome outcome = run_all(2, 1, [](std::size_t job, const Channel& channel) {
+                const std::string much(most_packet_bytes + 1, 'x');
+                if (job == 0) channel.send('m', much);
+                for (int descriptor = 3; descriptor < 100; ++descriptor)
+                  for (int i = 0; i < 100 && ::write(descriptor, much.data(), much.size()) > 0; ++i) {
+                  }
+                return 0;
+              });
+              for (const JobEnd& end : outcome.ends)
+                if (end.how != JobEnd::How::unheard || end.status != EMSGSIZE) return 1;
+              if (describe(outcome.ends[0], 0, "").find("128 MB") == std::string::npos) return 2;
+              rusage used{};
+              ::getrusage(RUSAGE_SELF, &used);
+              return used.ru_maxrss < 100 * 1024 || sanitized ? 0 : 3;  // KiB
+            }),
+            0);
+}
+
 TEST(Process, OwnTimeLimit) {
   const Outcome outcome = run_all(1, 1, [](std::size_t, const Channel&) {
     end_after(0.1);
