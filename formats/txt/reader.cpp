@@ -73,7 +73,7 @@ void read_param(Parser& p, Fabric&, std::string_view) {
     p.error(spot, fmt::format("the param {} is there twice; first on line {}", in_quotes(*name), *line));
 }
 
-void check_settings(Parser& p, const Source& source) {
+void check_settings(Parser& p) {
   if (p.is_stopped() || p.report.errors() > 0) return;
   const std::vector<std::string_view> known = p.scope().names();
   for (const fabric::Setting& setting : p.settings) {
@@ -281,7 +281,7 @@ std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting
     p.read_block("", "", p.statement(), file_table(), p.fabric);
     p.check_references();
     p.fabric.tell_threads_their_materials();
-    check_settings(p, source);
+    check_settings(p);
     if (report.errors() == 0)
       if (const Status fits = fabric::check_uses(p.fabric); !fits)
         report.error(spot_at(source, fits.error().place), fits.error().text, fits.error().kind);

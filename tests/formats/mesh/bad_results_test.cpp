@@ -233,7 +233,7 @@ TEST(BadVtu, CompressedBlocksAreBounded) {
 
 TEST(BadVtu, ArraysAtOnePlaceAreBounded) {
   std::string pieces = "<Piece>\n<PointData>";
-  for (int k = 0; k < 100; ++k) pieces += appended_array(fmt::format("a{}", k), "Float64");
+  for (int k = 0; k < 100; ++k) pieces += appended_array(fmt::format("a{}", k), "UInt8");
   const std::string zeros(8U << 17U, '\0');
   std::string data(8, '\0');
   const std::uint64_t size = zeros.size();
