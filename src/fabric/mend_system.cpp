@@ -35,12 +35,13 @@ Eigen::MatrixXd Linear::matrix() const {
 }
 
 void solve(const Linear& linear, const Vector& right, Vector& x) {
-  constexpr Eigen::Index most_dense = 200;
-  if (right.size() <= most_dense) {
-    x = linear.matrix().selfadjointView<Eigen::Lower>().llt().solve(right);
-    return;
-  }
-  constexpr int most = 300;
+  // Gradients that find no end in few steps cost more than a system of some hundred unknowns does at once.
+  constexpr Eigen::Index most_dense = 200, most_dense_after_all = 600;
+  constexpr int most_steps = 300, most_steps_before = 50;
+  const auto directly = [&] { x = linear.matrix().selfadjointView<Eigen::Lower>().llt().solve(right); };
+  if (right.size() <= most_dense) return directly();
+  const bool is_small = right.size() <= most_dense_after_all;
+  const int most = is_small ? most_steps_before : most_steps;
   constexpr double enough = 1e-3;  // of the right side; the next step takes up the rest
   const std::vector<Eigen::Matrix3d> inverses = linear.diagonal_inverses();
   const auto precondition = [&](const Vector& r) {
@@ -63,6 +64,7 @@ void solve(const Linear& linear, const Vector& right, Vector& x) {
     direction = z + next / product * direction;
     product = next;
   }
+  if (is_small && r.norm() > goal) directly();
 }
 
 }  // namespace selvage::fabric::mending

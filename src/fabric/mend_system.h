@@ -85,7 +85,7 @@ class Linear {
 };
 
 // The x at which `linear` pulls with `right`. By Cholesky's method where that is quick; else by conjugate
-// gradients from `x` on.
+// gradients from `x` on, as long as these come to an end sooner.
 void solve(const Linear& linear, const Vector& right, Vector& x);
 
 }  // namespace selvage::fabric::mending
