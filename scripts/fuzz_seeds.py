@@ -3,7 +3,7 @@ entity with all that it refers to becomes a file of its own."""
 
 import re
 
-EXTENSIONS = {".igs": {".igs", ".iges"}, ".stp": {".stp", ".step"}}
+EXTENSIONS = {".igs": {".igs", ".iges"}, ".stp": {".stp", ".step"}, ".knitout": {".knitout", ".k"}}
 # IGES: these many of the first entities stay in every part, so that small numbers that are no pointers keep their meaning.
 FIRST = 2
 
@@ -78,8 +78,8 @@ def cut_iges(text):
 CUTTERS = {".igs": cut_iges, ".stp": cut_step}
 
 
-def write_seeds(folders, kept, seeds, most, corpus):
-    """Files of `folders` with the extension `seeds` of up to `most` bytes, their parts, and all of the folder `kept`."""
+def write_seeds(folders, own, seeds, most, corpus):
+    """Files of `folders` with the extension `seeds` of up to `most` bytes, their parts, and all of the folders `own`."""
     files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.suffix.lower() in
              EXTENSIONS.get(seeds, {seeds} - {""}) and path.name != "CMakeLists.txt"]
     for path in files:
@@ -96,5 +96,6 @@ def write_seeds(folders, kept, seeds, most, corpus):
                     smallest[kind] = part
             for kind, part in smallest.items():
                 (corpus / f"seed_{path.stem}_{kind}").write_bytes(part.encode("latin-1"))
-    for path in kept.glob("*"):
-        (corpus / f"seed_{path.name}").write_bytes(path.read_bytes())
+    for folder in own:
+        for path in folder.glob("*"):
+            (corpus / f"seed_{folder.parent.name}_{path.name}").write_bytes(path.read_bytes())

@@ -141,13 +141,11 @@ class Expansion {
       source.error().kind = Kind::usage;
       return source.error();
     }
+    const Result<std::vector<std::string_view>> names = names_in_list(source->bytes(), name);
+    if (!names) return names.error();
     from_folder_ = true;
-    for (std::string_view line : split(source->bytes(), '\n')) {
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      if (line.empty()) continue;
-      if (line.front() == '@') return error(Kind::usage, "a list cannot name another list", {.file = name});
-      if (Status status = add(std::string(line)); !status.ok()) return status;
-    }
+    for (const std::string_view listed : *names)
+      if (Status status = add(std::string(listed)); !status.ok()) return status;
     return {};
   }
 
@@ -176,6 +174,23 @@ class Expansion {
 };
 
 }  // namespace
+
+Result<std::vector<std::string_view>> names_in_list(std::string_view bytes, const std::string& list) {
+  std::vector<std::string_view> names;
+  int number = 0;
+  for (std::string_view line : split(bytes, '\n')) {
+    ++number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty()) continue;
+    const auto wrong = [&](const char* text) {
+      return error(Kind::usage, text, {.file = list, .place = {.line = number}});
+    };
+    if (line.front() == '@') return wrong("a list cannot name another list");
+    if (line.find('\0') != std::string_view::npos) return wrong("a name cannot hold a zero byte");
+    names.push_back(line);
+  }
+  return names;
+}
 
 void Inputs::add(const Input& input) {
   std::string record;

@@ -54,6 +54,10 @@ struct InputList {
   bool one_file = false;  // the command line names exactly one file (no folder, no list)
 };
 
+// The names that the bytes of `@list` hold, one a line, in their order; they stay valid while the bytes do.
+// Errors (usage), at their line: a list in a list, a zero byte.
+Result<std::vector<std::string_view>> names_in_list(std::string_view bytes, const std::string& list);
+
 // Errors (usage): a list that cannot be read, "-" twice, nothing named. `diff` and `edit` take files only, as
 // they are named.
 Result<InputList> inputs_of(const Options& options);

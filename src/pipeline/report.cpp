@@ -97,16 +97,20 @@ std::string whole_report(const std::string& started, double seconds, bool ok, co
   return text_of(out, 2) + "\n";
 }
 
-Result<Json> read_report(const std::string& path) {
-  const Result<Source> source = Source::open(path);
-  if (!source) return source.error();
-  Json report = Json::parse(source->bytes(), nullptr, false);
+Result<Json> parse_report(std::string_view bytes, std::string_view name) {
+  Json report = Json::parse(bytes, nullptr, false);
   const auto inputs = report.is_object() ? report.find("inputs") : report.end();
   if (!report.is_object() || inputs == report.end() || !inputs->is_array())
     return error(Kind::malformed,
                  "this is not a report of selvage: those are written by --report FILE.json of other commands",
-                 {.file = path});
+                 {.file = std::string(name)});
   return report;
+}
+
+Result<Json> read_report(const std::string& path) {
+  const Result<Source> source = Source::open(path);
+  if (!source) return source.error();
+  return parse_report(source->bytes(), path);
 }
 
 Result<std::map<std::string, std::string>> read_entries(const std::string& report_path) {
