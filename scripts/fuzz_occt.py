@@ -17,7 +17,7 @@ import fuzz_page
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "cli"))
-from step_damage import BASES, Base  # noqa: E402
+from step_damage import Base  # noqa: E402
 
 SECONDS, MEGABYTES = 20, 2000
 # What a run takes longer than its limit: the end of a worker, and the next one's begin, on a busy machine.
@@ -29,11 +29,26 @@ OURS = re.compile(r"crashed:|ended unexpectedly|unexpected failure|was killed fr
 STOPPED = re.compile(r"makes the reader of STEP fail|was stopped: not done within|needs more memory than")
 
 
+# As small as they can be, since an execution costs what its yarns cost: a straight yarn, a ring, two yarns and their cell, a piece.
+THREAD = "material epoxy\n density 1.2\nend\nthread t\n diameter 1\n material epoxy\nend\n"
+YARN = "yarn {} t\n path polyline\n -1 {} 0\n 3 {} 0\n end\nend\n"
+CELL = "cell 0 -1 -1  2 3 1\n matrix epoxy\nend\n"
+TEXTS = {
+    "yarn": f"fabric 1\ntolerance 0.1\n{THREAD}{YARN.format('a', 0, 0)}",
+    "ring": f"fabric 1\ntolerance 0.2\n{THREAD}yarn a t\n closed\n path\n 0 0 0\n 5 0 0\n 5 5 0\n 0 5 0\n end\nend\n",
+    "two": f"fabric 1\ntolerance 0.1\n{THREAD}{YARN.format('a', 0, 0)}{YARN.format('b', 1.5, 1.5)}{CELL}",
+    "piece": (ROOT / "samples" / "pocket_pieces.txt").read_text(),
+}
+# Every kind of file that the program writes: a text and the options.
+KINDS = [("yarn", []), ("yarn", ["--ends", "fan"]), ("ring", ["--ends", "planar"]), ("yarn", ["--ends", "none", "--step-schema", "AP214"]),
+         ("two", ["--instances"]), ("piece", []), ("two", ["--cut", "--matrix"])]
+
+
 def bases_of(program, folder):
-    """Small STEP files of every kind that the program writes."""
-    for name, arguments in BASES:
-        path = folder / f"{name}.stp"
-        subprocess.run([program, "convert", *map(str, arguments), "-o", path, "--quiet"], check=True)
+    for number, (name, options) in enumerate(KINDS):
+        text, path = folder / f"{name}.txt", folder / f"base{number}.stp"
+        text.write_text(TEXTS[name])
+        subprocess.run([program, "convert", text, *options, "-o", path, "--quiet"], check=True)
         yield Base(path.read_text())
 
 
