@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <functional>
 #include <unordered_set>
@@ -182,11 +183,14 @@ Result<std::vector<std::string_view>> names_in_list(std::string_view bytes, cons
     ++number;
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty()) continue;
-    const auto wrong = [&](const char* text) {
-      return error(Kind::usage, text, {.file = list, .place = {.line = number}});
+    const auto refuse = [&](std::string what) {
+      return error(Kind::usage, std::move(what), {.file = list, .place = {number, 1}});
     };
-    if (line.front() == '@') return wrong("a list cannot name another list");
-    if (line.find('\0') != std::string_view::npos) return wrong("a name cannot hold a zero byte");
+    if (line.front() == '@') return refuse("a list cannot name another list");
+    if (line.find('\0') != std::string_view::npos)
+      return refuse("this line has a zero byte: a list is a text with the path of an input in each line");
+    if (line.size() >= PATH_MAX)
+      return refuse(fmt::format("this line has {} bytes, and a path less than {}", line.size(), PATH_MAX));
     names.push_back(line);
   }
   return names;

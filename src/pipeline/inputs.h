@@ -55,7 +55,7 @@ struct InputList {
 };
 
 // The names that the bytes of `@list` hold, one a line, in their order; they stay valid while the bytes do.
-// Errors (usage), at their line: a list in a list, a zero byte.
+// Errors (usage), at their line: a list in a list, what is no path.
 Result<std::vector<std::string_view>> names_in_list(std::string_view bytes, const std::string& list);
 
 // Errors (usage): a list that cannot be read, "-" twice, nothing named. `diff` and `edit` take files only, as

@@ -7,6 +7,7 @@
 #include "core/sha256.h"
 #include "core/source.h"
 #include "pipeline/parts.h"
+#include "pipeline/report_reader.h"
 #include "pipeline/versions.h"
 
 namespace selvage::pipeline {

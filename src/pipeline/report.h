@@ -83,10 +83,7 @@ struct Counts {
 std::string whole_report(const std::string& started, double seconds, bool ok, const Counts& counts,
                          const std::vector<std::string>& inputs);
 
-// A report as it was written; `inputs` is there and a list, of whatever. `name`: of messages. Error:
-// malformed.
-Result<Json> parse_report(std::string_view bytes, std::string_view name);
-// That of a file. Errors: io, malformed.
+// A report as it was written; `inputs` is there and a list, of whatever. Errors: io, malformed.
 Result<Json> read_report(const std::string& path);
 
 // An earlier report: the entry of each path as JSON text. Errors: as read_report().

@@ -10,6 +10,7 @@
 #include "pipeline/parts.h"
 #include "pipeline/report.h"
 #include "pipeline/report_page.h"
+#include "pipeline/report_reader.h"
 
 namespace selvage::fuzz {
 
