@@ -7,10 +7,17 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-SHARED = re.compile(r"src/core/(base64|csv|number_text|source|text_\w+|words|xml_text)\.|formats/format\.h|tests/fuzz/\w+\.(cpp|h)")
+SHARED = re.compile(
+    r"src/core/(base64|csv|number_text|source|text_\w+|words|xml_text)\.|formats/format\.h|tests/fuzz/\w+\.(cpp|h)"
+)
 # Targets that are no format, and the sources that they read with; meshes and placings take too long for a few seconds.
-OTHERS = {"results": r"formats/(frd|inp)/|src/fem/solved_deck", "report": r"src/pipeline/(report|junit)", "lists": r"src/pipeline/(inputs|parts)",
-          "use": r"formats/(txt|wif|csv)/|src/pipeline/named_files", "expressions": r"formats/txt/"}
+OTHERS = {
+    "results": r"formats/(frd|inp)/|src/fem/solved_deck",
+    "report": r"src/pipeline/(report|junit)",
+    "lists": r"src/pipeline/(inputs|parts)",
+    "use": r"formats/(txt|wif|csv)/|src/pipeline/named_files",
+    "expressions": r"formats/txt/",
+}
 
 
 def git(*arguments):

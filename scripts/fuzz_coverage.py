@@ -16,8 +16,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 FUZZ = ROOT / "tests" / "fuzz"
 EXCUSES, LEFT = FUZZ / "not_of_readers.txt", FUZZ / "UNREACHED.md"
 # Readers whose work is done in other folders as well.
-FOLDERS = {"results": ["src/fem/solved_deck.cpp"], "report": ["src/pipeline/report.cpp", "src/pipeline/report_page.cpp"],
-           "use": ["src/pipeline/named_files.cpp"]}
+FOLDERS = {
+    "results": ["src/fem/solved_deck.cpp"],
+    "report": ["src/pipeline/report.cpp", "src/pipeline/report_page.cpp"],
+    "use": ["src/pipeline/named_files.cpp"],
+}
 
 
 def excuses():
@@ -36,8 +39,17 @@ def sources_of(target):
 
 def replay(program, target, corpus, profile):
     """Runs the inputs of a target; the number of them."""
-    inputs = [folder for folder in (corpus, FUZZ / "seeds" / target, FUZZ / "crashers" / target) if folder.is_dir() and any(folder.iterdir())]
-    done = subprocess.run([program, target, *inputs], capture_output=True, text=True, env={**os.environ, "LLVM_PROFILE_FILE": str(profile)})
+    inputs = [
+        folder
+        for folder in (corpus, FUZZ / "seeds" / target, FUZZ / "crashers" / target)
+        if folder.is_dir() and any(folder.iterdir())
+    ]
+    done = subprocess.run(
+        [program, target, *inputs],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "LLVM_PROFILE_FILE": str(profile)},
+    )
     if done.returncode != 0:
         sys.exit(f"fuzz: {target} stops at {done.stderr.splitlines()[-1]}")
     return int(done.stdout.split()[0])
@@ -48,8 +60,14 @@ def functions_of(program, profile, sources):
     times (a template) is one."""
     merged = profile.with_suffix(".profdata")
     subprocess.run(["llvm-profdata-14", "merge", "-sparse", profile, "-o", merged], check=True)
-    exported = json.loads(subprocess.run(["llvm-cov-14", "export", program, f"-instr-profile={merged}", *[ROOT / path for path in sources]],
-                                         check=True, capture_output=True, text=True).stdout)
+    exported = json.loads(
+        subprocess.run(
+            ["llvm-cov-14", "export", program, f"-instr-profile={merged}", *[ROOT / path for path in sources]],
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+    )
     found = {}
     for function in exported["data"][0]["functions"]:
         path = os.path.relpath(function["filenames"][0], ROOT)
@@ -63,10 +81,17 @@ def functions_of(program, profile, sources):
         known = found.setdefault(key, (function["name"], {}))[1]
         for line, reached in lines.items():
             known[line] = known.get(line, False) or reached
-    names = subprocess.run(["c++filt", "-p"], input="\n".join(name.split(":")[-1] for name, _ in found.values()), check=True,
-                           capture_output=True, text=True).stdout.splitlines()
+    names = subprocess.run(
+        ["c++filt", "-p"],
+        input="\n".join(name.split(":")[-1] for name, _ in found.values()),
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.splitlines()
     for ((path, first, last), (_, lines)), name in zip(found.items(), names):
-        yield path, re.sub(r"^.*::(?=[^:(]*(\{|$|\())", "", name.replace("(anonymous namespace)::", "")), first, last, lines
+        yield path, re.sub(
+            r"^.*::(?=[^:(]*(\{|$|\())", "", name.replace("(anonymous namespace)::", "")
+        ), first, last, lines
 
 
 def lines_of(regions):
@@ -94,7 +119,9 @@ def measure(program, target, folder, known):
     count = replay(program, target, folder / "corpus" / target, profile)
     total, missing = collections.Counter(), []
     lines_seen = {}
-    for path, name, first, last, lines in sorted(functions_of(program, profile, sources_of(target)), key=lambda f: (f[0], f[2], -f[3])):
+    for path, name, first, last, lines in sorted(
+        functions_of(program, profile, sources_of(target)), key=lambda f: (f[0], f[2], -f[3])
+    ):
         if any(fnmatch.fnmatch(path, where) and fnmatch.fnmatch(name, what) for where, what, _ in known):
             continue
         own = {line: reached for line, reached in lines.items() if (path, line) not in lines_seen}

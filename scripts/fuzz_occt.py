@@ -40,8 +40,15 @@ TEXTS = {
     "piece": (ROOT / "samples" / "pocket_pieces.txt").read_text(),
 }
 # Every kind of file that the program writes: a text and the options.
-KINDS = [("yarn", []), ("yarn", ["--ends", "fan"]), ("ring", ["--ends", "planar"]), ("yarn", ["--ends", "none", "--step-schema", "AP214"]),
-         ("two", ["--instances"]), ("piece", []), ("two", ["--cut", "--matrix"])]
+KINDS = [
+    ("yarn", []),
+    ("yarn", ["--ends", "fan"]),
+    ("ring", ["--ends", "planar"]),
+    ("yarn", ["--ends", "none", "--step-schema", "AP214"]),
+    ("two", ["--instances"]),
+    ("piece", []),
+    ("two", ["--cut", "--matrix"]),
+]
 
 
 def bases_of(program, folder):
@@ -85,8 +92,25 @@ class Tally:
 def run_batch(program, tally, folder, files):
     report, out = folder / "report.json", folder / "out"
     more = ["-o", out] if tally.name == "convert" else []
-    done = subprocess.run([program, *COMMANDS[tally.name], *files, *more, "--report", report, "--quiet", "--sandbox", "require",
-                           "--timeout", str(SECONDS), "--memory", str(MEGABYTES)], capture_output=True, text=True)
+    done = subprocess.run(
+        [
+            program,
+            *COMMANDS[tally.name],
+            *files,
+            *more,
+            "--report",
+            report,
+            "--quiet",
+            "--sandbox",
+            "require",
+            "--timeout",
+            str(SECONDS),
+            "--memory",
+            str(MEGABYTES),
+        ],
+        capture_output=True,
+        text=True,
+    )
     shutil.rmtree(out, ignore_errors=True)
     if done.returncode not in (0, 1, 3) or not report.exists():
         tally.fail(files[0], f"exit code {done.returncode} of a run that begins with it: {done.stderr[-500:]}")
@@ -123,11 +147,26 @@ def main():
             for tally in tallies:
                 run_batch(chosen.program, tally, folder, files)
             shutil.rmtree(batch)
-            print(f"occt: {first + len(files)} files, {time.monotonic() - begin:.0f} s, "
-                  f"{sum(len(tally.failures) for tally in tallies)} failures", file=sys.stderr, flush=True)
+            print(
+                f"occt: {first + len(files)} files, {time.monotonic() - begin:.0f} s, "
+                f"{sum(len(tally.failures) for tally in tallies)} failures",
+                file=sys.stderr,
+                flush=True,
+            )
     for tally in tallies:
-        fuzz_page.update("occt", tally.name, [tally.files, chosen.seed, tally.sound, tally.defects, tally.stopped, f"{tally.longest:.1f}",
-                                              len(tally.failures)])
+        fuzz_page.update(
+            "occt",
+            tally.name,
+            [
+                tally.files,
+                chosen.seed,
+                tally.sound,
+                tally.defects,
+                tally.stopped,
+                f"{tally.longest:.1f}",
+                len(tally.failures),
+            ],
+        )
         for failure in tally.failures:
             print(f"occt: {tally.name}: {failure}", file=sys.stderr)
     return 1 if any(tally.failures for tally in tallies) else 0

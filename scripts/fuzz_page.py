@@ -13,21 +13,34 @@ Executions of each target since its last finding, of all campaigns together, eac
 learnt; with the address and undefined behaviour sanitizers of clang. Edges are those of the program's flow that were taken,
 features are edges with how often, libFuzzer's own figures. What stopped a campaign, or was handed in, was mended, is kept in
 `crashers/TARGET` and run by the tests (`fuzz.TARGET`).""",
-        ["what it does", "bytes, at most", "executions", "campaigns", "seconds", "a second", "edges", "features",
-         "inputs learnt", "kept crashers"]),
+        [
+            "what it does",
+            "bytes, at most",
+            "executions",
+            "campaigns",
+            "seconds",
+            "a second",
+            "edges",
+            "features",
+            "inputs learnt",
+            "kept crashers",
+        ],
+    ),
     "lines": (
         """## Lines of readers that are reached
 
 By `scripts/fuzz --coverage`: the lines of a reader's folder that its corpus reaches, of those that a reader has. Sources and
 functions that do not read are listed with their reason in `not_of_readers.txt`; lines that are not reached are in `UNREACHED.md`.""",
-        ["lines", "reached", "%", "inputs"]),
+        ["lines", "reached", "%", "inputs"],
+    ),
     "occt": (
         """## OpenCASCADE in the sandbox
 
 By `scripts/fuzz occt`: STEP files of the program with one to four damages each (references, numbers, types, lists, statements),
 read by the program with `--sandbox require`. Stopped are those that OpenCASCADE died of or that reached the time or memory limit,
 each reported as a defect of the file; failures are deaths reported as the program's own, other exit codes, and inputs above their limits.""",
-        ["files", "seed", "sound", "defects", "stopped", "longest, s", "failures"]),
+        ["files", "seed", "sound", "defects", "stopped", "longest, s", "failures"],
+    ),
 }
 
 

@@ -23,7 +23,23 @@ NUMBER = re.compile(r"(?<=[(,])\s*-?\d+\.?\d*(?:E[-+]?\d+)?(?=[,)])")
 LIST = re.compile(r"\([^()']*\)")
 FLAG = re.compile(r"\.[TF]\.")
 OTHERS = ["$", "*", "()", "''", "0.", "1", ".T.", "LENGTH_MEASURE(1.)", "(#1,#2)"]
-NUMBERS = ["0", "0.", "-1", "1", "-1.", "1.E-300", "1.E300", "-1.E300", "1.E-7", "2147483647", "-2147483648", "4294967296", "1.E19", "3", "100"]
+NUMBERS = [
+    "0",
+    "0.",
+    "-1",
+    "1",
+    "-1.",
+    "1.E-300",
+    "1.E300",
+    "-1.E300",
+    "1.E-7",
+    "2147483647",
+    "-2147483648",
+    "4294967296",
+    "1.E19",
+    "3",
+    "100",
+]
 
 
 def split(text):
@@ -34,11 +50,11 @@ def split(text):
 
 def places_of_references(data):
     """Where references stand that are no statement's own number."""
-    return [match for match in REFERENCE.finditer(data) if not re.match(r"\s*=", data[match.end():match.end() + 3])]
+    return [match for match in REFERENCE.finditer(data) if not re.match(r"\s*=", data[match.end() : match.end() + 3])]
 
 
 def replaced(data, match, new):
-    return data[:match.start()] + new + data[match.end():]
+    return data[: match.start()] + new + data[match.end() :]
 
 
 class Base:
@@ -68,7 +84,16 @@ class Base:
 
     def damaged(self, chance):
         """One to four damages of any kind."""
-        kinds = [self.reference, self.reference, self.number, self.number, self.listed, self.flag, self.type, self.statement]
+        kinds = [
+            self.reference,
+            self.reference,
+            self.number,
+            self.number,
+            self.listed,
+            self.flag,
+            self.type,
+            self.statement,
+        ]
         data = self.data
         for _ in range(chance.randint(1, 4)):
             data = chance.choice(kinds)(data, chance)
@@ -92,7 +117,9 @@ class Base:
         value = float(match.group())
         near = [f"{value * factor!r}".upper() for factor in (-1, 1 + 1e-6, 0.5, 1000)]
         whole = "." not in match.group()
-        return replaced(data, match, chance.choice(NUMBERS + ([str(int(value) + step) for step in (-1, 1)] if whole else near)))
+        return replaced(
+            data, match, chance.choice(NUMBERS + ([str(int(value) + step) for step in (-1, 1)] if whole else near))
+        )
 
     def listed(self, data, chance):
         """A list without an element, with one twice, in another order, or empty."""
@@ -120,7 +147,7 @@ class Base:
         if not match:
             return data
         begin = match.start(2)
-        return data[:begin] + chance.choice(sorted(self.of_type)) + data[match.end(2):]
+        return data[:begin] + chance.choice(sorted(self.of_type)) + data[match.end(2) :]
 
     def statement(self, data, chance):
         """One that is missing, that has another's number, or that is there with another's content."""
