@@ -49,6 +49,14 @@ class Targets(unittest.TestCase):
         for kind in ("seeds", "crashers"):
             self.assertEqual([path.name for path in (FUZZ / kind).iterdir() if path.name not in targets()], [])
 
+    def test_what_is_left_out_of_coverage_is_there(self):
+        for line in (FUZZ / "not_of_readers.txt").read_text().splitlines():
+            if line and not line.startswith("#"):
+                place, reason = line.split(None, 1)
+                with self.subTest(place):
+                    self.assertTrue(list(ROOT.glob(place.partition(":")[0])))
+                    self.assertTrue(reason)
+
     def test_the_nightly_workflow_runs_all(self):
         text = (ROOT / ".github" / "workflows" / "nightly.yml").read_text()
         self.assertIn("targets=$(scripts/fuzz --list --json)", text)
