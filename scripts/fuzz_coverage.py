@@ -90,7 +90,7 @@ def functions_of(program, profile, sources):
     ).stdout.splitlines()
     for ((path, first, last), (_, lines)), name in zip(found.items(), names):
         yield path, re.sub(
-            r"^.*::(?=[^:(]*(\{|$|\())", "", name.replace("(anonymous namespace)::", "")
+            r"^.*::(?=[^:(]*(\{|$|\())", "", name.replace("(anonymous namespace)::", "").replace("[abi:cxx11]", "")
         ), first, last, lines
 
 
