@@ -3,7 +3,9 @@ nothing breaks, and the nodes that ties join."""
 
 import numpy
 
-WEIGHTS = (numpy.ones((3, 3)) + numpy.eye(3)) / 12  # integrals of products of two corners' shares of a triangle of area 1
+WEIGHTS = (
+    numpy.ones((3, 3)) + numpy.eye(3)
+) / 12  # integrals of products of two corners' shares of a triangle of area 1
 
 
 def sides(deck, numbers):

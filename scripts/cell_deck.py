@@ -132,7 +132,9 @@ class Deck:
         if folder not in target.parents:
             raise BadDeck(f"{place}: the file that it includes is not in the folder of the deck: put it there")
         if target in self.included or len(self.included) > MOST_INCLUDED:
-            raise BadDeck(f"{place}: the file that it includes is included already, or the last of more than {MOST_INCLUDED}")
+            raise BadDeck(
+                f"{place}: the file that it includes is included already, or the last of more than {MOST_INCLUDED}"
+            )
         return path
 
     def _blocks(self):
@@ -170,7 +172,9 @@ class Deck:
                 self._take(*block)
         except WRONG_NUMBERS as failure:
             place = self.places[block[3]] if self.places else self.path
-            raise BadDeck(f"{place}: *{block[0][:40]}, or what follows it, cannot be read: {reason(failure)}") from failure
+            raise BadDeck(
+                f"{place}: *{block[0][:40]}, or what follows it, cannot be read: {reason(failure)}"
+            ) from failure
 
     def _take(self, keyword, options, data, start, comment):
         rows = [[word.strip() for word in line.split(",")] for line in data]
@@ -376,7 +380,7 @@ def stiffness_of(values):
 def turned(axes):
     """What makes strains along axes from those in space (n x 6 x 6, engineering): rows of axis 1 and of a second one across it."""
     r = frames(axes)
-    strain = numpy.zeros((len(axes), 6, 6))  
+    strain = numpy.zeros((len(axes), 6, 6))
     for a, (i, j) in enumerate(PAIRS):
         for b, (k, l) in enumerate(PAIRS):
             value = r[:, i, k] * r[:, j, l] + (r[:, i, l] * r[:, j, k] if k != l else 0)

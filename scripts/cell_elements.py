@@ -155,7 +155,12 @@ class Cell:
         where interfaces are stiff. (What an interface adds to a group is nothing.)"""
         count = self.conditions.count
         group = numpy.arange(count + 1)
-        pairs = self.conditions.unknown[numpy.array(list(deck.wedges.values()))].reshape(-1, 2, 3).transpose(0, 2, 1).reshape(-1, 2)
+        pairs = (
+            self.conditions.unknown[numpy.array(list(deck.wedges.values()))]
+            .reshape(-1, 2, 3)
+            .transpose(0, 2, 1)
+            .reshape(-1, 2)
+        )
         pairs = pairs[(pairs >= 0).all(axis=1)]
         while (group[pairs[:, 0]] != group[pairs[:, 1]]).any():
             least = group[pairs].min(axis=1)

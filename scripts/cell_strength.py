@@ -86,9 +86,7 @@ def stresses(deck, section, fields):
         turn = turned(numpy.array([deck.axes[e] for e in part])) if oriented else None
         for slopes, volume in points(numpy.array([[deck.nodes[n] for n in row] for row in nodes])):
             gradient = numpy.einsum("naj,naic->nijc", slopes, moved)
-            strain = numpy.stack(
-                [gradient[:, i, j] + (gradient[:, j, i] if i != j else 0) for i, j in PAIRS], axis=1
-            )
+            strain = numpy.stack([gradient[:, i, j] + (gradient[:, j, i] if i != j else 0) for i, j in PAIRS], axis=1)
             if turn is not None:
                 strain = turn @ strain
             yield volume, numpy.einsum("ij,njc->inc", local, strain)
@@ -162,5 +160,9 @@ def show(failure, units):
     if failure["not_judged"]:
         print(f"  not judged, for their materials have no strength: {', '.join(failure['not_judged'])}")
     if failure["judged_along_alone"]:
-        print(f"  judged along their fibres alone, for nothing is said across: {', '.join(failure['judged_along_alone'])}")
-    print("  without stresses of curing or cooling; at one point the less, the finer the mesh is where yarns have edges")
+        print(
+            f"  judged along their fibres alone, for nothing is said across: {', '.join(failure['judged_along_alone'])}"
+        )
+    print(
+        "  without stresses of curing or cooling; at one point the less, the finer the mesh is where yarns have edges"
+    )

@@ -18,6 +18,13 @@ jobs=$((gigabytes / 2))
 # shellcheck disable=SC2034  # of scripts/sanitize and scripts/fuzz
 sanitizer_flags="-O2 -g1 -DCGAL_NDEBUG -fsanitize-ignorelist=$root/scripts/suppressions/headers.txt"
 
+# The build for libFuzzer (scripts/fuzz), whose sources scripts/syntax reads.
+# shellcheck disable=SC2034  # of those two
+fuzz_options=(-DCMAKE_CXX_COMPILER=clang++ -DSELVAGE_FUZZ=ON -DSELVAGE_WERROR=OFF "-DSELVAGE_SANITIZE=address,undefined"
+  -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=$sanitizer_flags")
+# shellcheck disable=SC2034
+coverage_flags="-O1 -fprofile-instr-generate -fcoverage-mapping"
+
 # configure [CMAKE OPTIONS]: quiet unless it fails.
 configure() {
   log=$(mktemp)

@@ -57,7 +57,10 @@ def of_tensor(sizes, rows, believed):
     the relative error of its worst one, so that no coincidence is taken for precision."""
     found = [stated(sizes, values, believed) for values in rows]
     shares = [max(errors[k] / abs(values[k]) for (_, errors, _), values in zip(found, rows)) for k in range(len(sizes))]
-    return [(limit, [share * abs(value) for share, value in zip(shares, values)], order) for (limit, _, order), values in zip(found, rows)]
+    return [
+        (limit, [share * abs(value) for share, value in zip(shares, values)], order)
+        for (limit, _, order), values in zip(found, rows)
+    ]
 
 
 def apart(intervals):

@@ -3,7 +3,7 @@ entity with all that it refers to becomes a file of its own."""
 
 import re
 
-EXTENSIONS = {".igs": {".igs", ".iges"}, ".stp": {".stp", ".step"}}
+EXTENSIONS = {".igs": {".igs", ".iges"}, ".stp": {".stp", ".step"}, ".knitout": {".knitout", ".k"}}
 # IGES: these many of the first entities stay in every part, so that small numbers that are no pointers keep their meaning.
 FIRST = 2
 
@@ -34,13 +34,13 @@ def cut_iges(text):
     entities = []
     for one, two in zip(section["D"][::2], section["D"][1::2]):
         first, count = int(one[8:16]), int(two[24:32])
-        entities.append((one, two, [line[:64] for line in section["P"][first - 1:first - 1 + count]]))
+        entities.append((one, two, [line[:64] for line in section["P"][first - 1 : first - 1 + count]]))
 
     def is_pointer(word):
         return word.strip().lstrip("-").isdigit() and 0 < abs(int(word)) < 2 * len(entities) and int(word) % 2 == 1
 
     def fields(line):
-        return [line[i:i + 8] for i in range(0, 72, 8)]
+        return [line[i : i + 8] for i in range(0, 72, 8)]
 
     def references(index):
         one, two, lines = entities[index]
@@ -49,7 +49,9 @@ def cut_iges(text):
         return [abs(int(word)) // 2 for word in words if is_pointer(word)]
 
     for index, (one, _, _) in enumerate(entities):
-        kept = sorted({n for start in [*range(FIRST), index] if start < len(entities) for n in closure(start, references)})
+        kept = sorted(
+            {n for start in [*range(FIRST), index] if start < len(entities) for n in closure(start, references)}
+        )
         place = {2 * old + 1: 2 * new + 1 for new, old in enumerate(kept)}
 
         def moved(match):
@@ -67,10 +69,14 @@ def cut_iges(text):
             b[2] = re.sub(r".*", moved, b[2], count=1)
             a[1] = f"{len(parameters) + 1:8}"
             directory += ["".join(a), "".join(b)]
-            parameters += [f"{re.sub(r'(?<=,)-?[0-9]+(?=[,;])', moved, line):64}{place[2 * old + 1]:8}" for line in lines]
-        lines = [f"{line:72}{letter}{number:7}\n" for letter, all_lines in
-                 (("S", section["S"]), ("G", section["G"]), ("D", directory), ("P", parameters))
-                 for number, line in enumerate(all_lines, 1)]
+            parameters += [
+                f"{re.sub(r'(?<=,)-?[0-9]+(?=[,;])', moved, line):64}{place[2 * old + 1]:8}" for line in lines
+            ]
+        lines = [
+            f"{line:72}{letter}{number:7}\n"
+            for letter, all_lines in (("S", section["S"]), ("G", section["G"]), ("D", directory), ("P", parameters))
+            for number, line in enumerate(all_lines, 1)
+        ]
         counts = f"S{len(section['S']):7}G{len(section['G']):7}D{len(directory):7}P{len(parameters):7}"
         yield one[:8].strip(), "".join(lines) + f"{counts:72}T{1:7}\n"
 
@@ -78,10 +84,14 @@ def cut_iges(text):
 CUTTERS = {".igs": cut_iges, ".stp": cut_step}
 
 
-def write_seeds(folders, kept, seeds, most, corpus):
-    """Files of `folders` with the extension `seeds` of up to `most` bytes, their parts, and all of the folder `kept`."""
-    files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.suffix.lower() in
-             EXTENSIONS.get(seeds, {seeds} - {""}) and path.name != "CMakeLists.txt"]
+def write_seeds(folders, own, seeds, most, corpus):
+    """Files of `folders` with the extension `seeds` of up to `most` bytes, their parts, and all of the folders `own`."""
+    files = [
+        path
+        for folder in folders
+        for path in sorted(folder.rglob("*"))
+        if path.suffix.lower() in EXTENSIONS.get(seeds, {seeds} - {""}) and path.name != "CMakeLists.txt"
+    ]
     for path in files:
         if path.stat().st_size <= most:
             (corpus / f"seed_{path.parent.name}_{path.name}").write_bytes(path.read_bytes())
@@ -96,5 +106,6 @@ def write_seeds(folders, kept, seeds, most, corpus):
                     smallest[kind] = part
             for kind, part in smallest.items():
                 (corpus / f"seed_{path.stem}_{kind}").write_bytes(part.encode("latin-1"))
-    for path in kept.glob("*"):
-        (corpus / f"seed_{path.name}").write_bytes(path.read_bytes())
+    for folder in own:
+        for path in folder.glob("*"):
+            (corpus / f"seed_{folder.parent.name}_{path.name}").write_bytes(path.read_bytes())

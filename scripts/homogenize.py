@@ -51,7 +51,11 @@ MOST_SECONDS = 3600  # of CalculiX, where --timeout says nothing
 def limit_memory(megabytes):
     """Of this process and those that it starts; where none is said, what the machine has free."""
     if megabytes is None:
-        free = [line.split()[1] for line in pathlib.Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemAvailable:")]
+        free = [
+            line.split()[1]
+            for line in pathlib.Path("/proc/meminfo").read_text().splitlines()
+            if line.startswith("MemAvailable:")
+        ]
         megabytes = int(free[0]) / 1024 if free else None
     if megabytes is None:
         return
@@ -65,8 +69,9 @@ def run_ccx(program, folder, name, seconds):
         raise Failure(f"{program} is not installed: apt-get install calculix-ccx, or say --ccx PROGRAM")
     # One thread: the same digits on every machine.
     try:
-        run = subprocess.run([program, name], cwd=folder, text=True, errors="replace", capture_output=True, check=False,
-                             timeout=seconds)
+        run = subprocess.run(
+            [program, name], cwd=folder, text=True, errors="replace", capture_output=True, check=False, timeout=seconds
+        )
     except subprocess.TimeoutExpired as failure:
         raise Failure(f"CalculiX was stopped: not done within its {seconds:g} s; --timeout gives it more") from failure
     except OSError as failure:
@@ -273,10 +278,14 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto", seconds=MOST
     try:
         deck = Deck(path)
     except ForeignElement as failure:
-        raise Failure(f"{path}: {failure}, which this script does not know: mesh it without --tetrahedron and --elements") from failure
+        raise Failure(
+            f"{path}: {failure}, which this script does not know: mesh it without --tetrahedron and --elements"
+        ) from failure
     drivers = deck.drivers()
     if not drivers or not deck.steps:
-        raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic; where it is periodic along one axis, --periodic will do)")
+        raise Failure(
+            f"{path}: no unit cell with load cases (mesh it with --matrix --periodic; where it is periodic along one axis, --periodic will do)"
+        )
     if deck.cell is None:
         raise Failure(f"{path}: the deck does not say its cell")
     matrix, thermal, fields, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder, seconds)
@@ -295,14 +304,18 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto", seconds=MOST
         return facts | conducting(deck, matrix / deck.cell.volume)
     if is_beam(drivers):
         if with_bounds:
-            raise Failure("bounds are known of blocks and plates; leave out --bounds: this cell is periodic along one axis, a beam")
+            raise Failure(
+                "bounds are known of blocks and plates; leave out --bounds: this cell is periodic along one axis, a beam"
+            )
         result = facts | beam(deck, matrix, thermal)
     else:
         plate = any(name.startswith("Curvature") for name in drivers)
         measure = deck.cell.volume / (deck.cell.height if plate else 1)
         result = facts | elastic(deck, matrix / measure, thermal / measure, plate, with_bounds)
     if fields is not None:
-        result["first_failure"] = strength.first_failure(deck, fields, numpy.array(result["stiffness"]), result["order"])
+        result["first_failure"] = strength.first_failure(
+            deck, fields, numpy.array(result["stiffness"]), result["order"]
+        )
     return result
 
 
@@ -439,7 +452,9 @@ def show_conduction(result):
 
 def show(result):
     plate = result["kind"] == "plate"
-    print(f"{result['file']}: {result['kind']}, {result['elements']} elements, {result['solver']} solver {result['seconds']:.1f} s")
+    print(
+        f"{result['file']}: {result['kind']}, {result['elements']} elements, {result['solver']} solver {result['seconds']:.1f} s"
+    )
     if "physics" in result:
         show_conduction(result)
     elif result["kind"] == "beam":
@@ -492,8 +507,16 @@ def main():
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")
     parser.add_argument("--json", metavar="FILE", help="write the results there too ('-': standard output, alone)")
-    parser.add_argument("--dry", action="store_true", help="mesh the yarns alone, without a matrix: ropes, dry braids (periodic along one axis)")
-    parser.add_argument("--bounds", action="store_true", help="of a stiffness: with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
+    parser.add_argument(
+        "--dry",
+        action="store_true",
+        help="mesh the yarns alone, without a matrix: ropes, dry braids (periodic along one axis)",
+    )
+    parser.add_argument(
+        "--bounds",
+        action="store_true",
+        help="of a stiffness: with volume fractions and the bounds of Voigt and Reuss (which are checked always)",
+    )
     parser.add_argument("--keep", metavar="DIR", help="keep the deck and what CalculiX wrote")
     parser.add_argument(
         "--solver",
@@ -501,13 +524,28 @@ def main():
         default="auto",
         help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT:,} nodes, of beams {LARGEST_DIRECT_BEAM:,})",
     )
-    parser.add_argument("--timeout", type=float, metavar="S", help=f"seconds that the mesh, and CalculiX, may take each (default: of CalculiX {MOST_SECONDS})")
-    parser.add_argument("--memory", type=float, metavar="MB", help="memory that the mesh, CalculiX and this script may take each (default: what is free)")
+    parser.add_argument(
+        "--timeout",
+        type=float,
+        metavar="S",
+        help=f"seconds that the mesh, and CalculiX, may take each (default: of CalculiX {MOST_SECONDS})",
+    )
+    parser.add_argument(
+        "--memory",
+        type=float,
+        metavar="MB",
+        help="memory that the mesh, CalculiX and this script may take each (default: what is free)",
+    )
     parser.add_argument("--ccx", default="ccx", help="the program (default: ccx)")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
     given, others = parser.parse_known_args()
     path = pathlib.Path(given.file)
-    limits = [word for name in ("timeout", "memory") if getattr(given, name) for word in (f"--{name}", f"{getattr(given, name):g}")]
+    limits = [
+        word
+        for name in ("timeout", "memory")
+        if getattr(given, name)
+        for word in (f"--{name}", f"{getattr(given, name):g}")
+    ]
     limit_memory(given.memory)
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(given.keep or temporary)
@@ -517,7 +555,17 @@ def main():
                 raise Failure(f"{path}: no such file")
             if path.suffix != ".inp":
                 deck = folder / (path.stem + ".inp")
-                command = [given.selvage, "mesh", str(path), "-o", str(deck), "--periodic", *([] if given.dry else ["--matrix"]), *limits, *others]
+                command = [
+                    given.selvage,
+                    "mesh",
+                    str(path),
+                    "-o",
+                    str(deck),
+                    "--periodic",
+                    *([] if given.dry else ["--matrix"]),
+                    *limits,
+                    *others,
+                ]
                 if subprocess.run(command, stdout=sys.stderr, check=False).returncode != 0:
                     raise Failure(f"{path}: it could not be meshed")
                 path = deck

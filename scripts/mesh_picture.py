@@ -4,7 +4,18 @@ import meshio
 import numpy
 from PIL import Image, ImageDraw
 
-YARN_COLORS = numpy.array([(214, 90, 70), (70, 130, 200), (230, 170, 60), (90, 170, 110), (150, 110, 190), (200, 120, 150), (120, 190, 190), (170, 150, 110)])
+YARN_COLORS = numpy.array(
+    [
+        (214, 90, 70),
+        (70, 130, 200),
+        (230, 170, 60),
+        (90, 170, 110),
+        (150, 110, 190),
+        (200, 120, 150),
+        (120, 190, 190),
+        (170, 150, 110),
+    ]
+)
 MATRIX_COLOR = numpy.array((225, 225, 215))
 EDGE_COLOR = (70, 70, 70)
 AZIMUTH, ELEVATION = numpy.radians((-60.0, 30.0))
@@ -27,7 +38,10 @@ def visible_cells(mesh):
     middles = (mesh.points[cells].mean(axis=1) - low) / (high - low)
     behind = is_matrix & (middles[:, 1] > middles[:, 0])
     groups = [(behind, MATRIX_COLOR)]
-    groups += [((yarns == yarn) & ~is_matrix, YARN_COLORS[k % len(YARN_COLORS)]) for k, yarn in enumerate(numpy.unique(yarns[~is_matrix]))]
+    groups += [
+        ((yarns == yarn) & ~is_matrix, YARN_COLORS[k % len(YARN_COLORS)])
+        for k, yarn in enumerate(numpy.unique(yarns[~is_matrix]))
+    ]
     return [skin(cells[chosen], numpy.tile(color, (chosen.sum(), 1))) for chosen, color in groups]
 
 
@@ -37,7 +51,9 @@ def draw(vtu, path, size):
     parts = visible_cells(mesh)
     triangles, colors = (numpy.concatenate(lists) for lists in zip(*parts))
     right = numpy.array((-numpy.sin(AZIMUTH), numpy.cos(AZIMUTH), 0))
-    eye = numpy.array((numpy.cos(ELEVATION) * numpy.cos(AZIMUTH), numpy.cos(ELEVATION) * numpy.sin(AZIMUTH), numpy.sin(ELEVATION)))
+    eye = numpy.array(
+        (numpy.cos(ELEVATION) * numpy.cos(AZIMUTH), numpy.cos(ELEVATION) * numpy.sin(AZIMUTH), numpy.sin(ELEVATION))
+    )
     up = numpy.cross(eye, right)
     corners = mesh.points[triangles]
     normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

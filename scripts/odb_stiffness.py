@@ -48,9 +48,13 @@ def read_steps(path):
                 continue
             fields = step.frames[-1].fieldOutputs
             if "U" not in fields.keys() or "RF" not in fields.keys():
-                raise Failure("step '" + step.name + "' has no U and RF: leave Abaqus' preselected output on, or ask for both")
+                raise Failure(
+                    "step '" + step.name + "' has no U and RF: leave Abaqus' preselected output on, or ask for both"
+                )
             regions = [sets[name.upper()] for name in drivers]
-            steps.append({name: (first(fields["U"], at), first(fields["RF"], at)) for name, at in zip(drivers, regions)})
+            steps.append(
+                {name: (first(fields["U"], at), first(fields["RF"], at)) for name, at in zip(drivers, regions)}
+            )
         return drivers, steps
     finally:
         odb.close()
@@ -66,8 +70,11 @@ def read_deck(path):
                 comment = line[2:].strip()
                 if comment.startswith("Cell: "):
                     v = [float(word) for word in comment[6:].split()]
-                    edges = [v[3:6], v[6:9], v[9:12]] if len(v) == 12 else [
-                        [v[3] - v[0], 0, 0], [0, v[4] - v[1], 0], [0, 0, v[5] - v[2]]]
+                    edges = (
+                        [v[3:6], v[6:9], v[9:12]]
+                        if len(v) == 12
+                        else [[v[3] - v[0], 0, 0], [0, v[4] - v[1], 0], [0, 0, v[5] - v[2]]]
+                    )
             elif line.startswith("*"):
                 keyword = line.split(",")[0].upper()
                 if keyword == "*STEP":
@@ -99,7 +106,9 @@ def stiffness(drivers, results, edges, steps):
     if not drivers:
         raise Failure("the results have no driver nodes (ConstraintsDriver0, ..)")
     if len(results) != len(steps):
-        raise Failure("the results have " + str(len(results)) + " steps, and the deck " + str(len(steps)) + ": did the job end?")
+        raise Failure(
+            "the results have " + str(len(results)) + " steps, and the deck " + str(len(steps)) + ": did the job end?"
+        )
     measure, kind, unit = measure_of(drivers, edges, steps)
     columns, comments, thermal = {}, {}, None
     for result, (comment, temperature) in zip(results, steps):
@@ -113,7 +122,13 @@ def stiffness(drivers, results, edges, steps):
     if without:
         raise Failure("no step moves " + ", ".join(without) + " alone")
     matrix = [[columns[name][row] for name in drivers] for row in range(len(drivers))]
-    return {"kind": kind, "unit": unit, "order": [comments[name] for name in drivers], "stiffness": matrix, "thermal_stress": thermal}
+    return {
+        "kind": kind,
+        "unit": unit,
+        "order": [comments[name] for name in drivers],
+        "stiffness": matrix,
+        "thermal_stress": thermal,
+    }
 
 
 def show(result):
@@ -126,7 +141,10 @@ def show(result):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="odb_stiffness.py", description="The stiffness of a unit cell from Abaqus' results: run by `abaqus python`.")
+    parser = argparse.ArgumentParser(
+        prog="odb_stiffness.py",
+        description="The stiffness of a unit cell from Abaqus' results: run by `abaqus python`.",
+    )
     parser.add_argument("odb", help="results of the deck of `selvage mesh --matrix --periodic`")
     parser.add_argument("--deck", help="the deck (default: that of the results' name beside them)")
     parser.add_argument("--json", metavar="FILE", help="write the results there too")
@@ -140,7 +158,9 @@ def main():
         drivers, results = read_steps(given.odb)
         result = stiffness(drivers, results, edges, steps)
     except ImportError:
-        print("odb_stiffness.py: Abaqus' Python is needed: abaqus python odb_stiffness.py " + given.odb, file=sys.stderr)
+        print(
+            "odb_stiffness.py: Abaqus' Python is needed: abaqus python odb_stiffness.py " + given.odb, file=sys.stderr
+        )
         return 1
     except Failure as failure:
         print("odb_stiffness.py: " + str(failure), file=sys.stderr)

@@ -44,8 +44,22 @@ def make_mesh(given, size, others, folder):
     openfoam = given.solver == "openfoam"
     name = folder / f"pores_{size}{'.foam' if openfoam else '.msh'}"
     report = folder / "report.json"
-    command = [given.selvage, "mesh", given.file, "-o", str(name), "--pores", "--periodic", "--order", "1" if openfoam else "2",
-               "--size" if given.size else "--segments", size, "--report", str(report), *others]
+    command = [
+        given.selvage,
+        "mesh",
+        given.file,
+        "-o",
+        str(name),
+        "--pores",
+        "--periodic",
+        "--order",
+        "1" if openfoam else "2",
+        "--size" if given.size else "--segments",
+        size,
+        "--report",
+        str(report),
+        *others,
+    ]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=sys.stderr, text=True, check=False)
     if run.returncode != 0 or not name.exists():
         raise Failure(f"{given.file}: it could not be meshed")
@@ -94,10 +108,22 @@ def study(given, others, folder):
         path, facts = make_mesh(given, word, others, folder)
         tensor, steps = tensor_of(given, path, facts)
         edge = (facts["volume"] / facts["tets"]) ** (1 / 3)
-        meshes.append({"size": word, "tets": facts["tets"], "edge": edge, "porosity": facts["porosity"], "permeability": known(tensor),
-                       "steps": steps, "facts": facts})
-        print(f"{'size' if given.size else 'segments'} {word}: {facts['tets']} tetrahedra, K (mm2) along x, y, z: "
-              + ", ".join(f"{tensor[k, k]:.5g}" for k in range(3)), file=sys.stderr)
+        meshes.append(
+            {
+                "size": word,
+                "tets": facts["tets"],
+                "edge": edge,
+                "porosity": facts["porosity"],
+                "permeability": known(tensor),
+                "steps": steps,
+                "facts": facts,
+            }
+        )
+        print(
+            f"{'size' if given.size else 'segments'} {word}: {facts['tets']} tetrahedra, K (mm2) along x, y, z: "
+            + ", ".join(f"{tensor[k, k]:.5g}" for k in range(3)),
+            file=sys.stderr,
+        )
     meshes.sort(key=lambda mesh: -mesh["edge"])
     edges = [mesh["edge"] for mesh in meshes]
     values = numpy.array([mesh["permeability"] for mesh in meshes], dtype=float)
@@ -113,16 +139,29 @@ def study(given, others, folder):
     last = values[-1]
     is_known = ~numpy.isnan(last)
     skew = abs(last - last.T)[is_known & is_known.T].max() / max(numpy.diag(last).max(), 1e-300)
-    return {"solver": given.solver, "periodic": facts["periodic"], "passages": facts["passages"]["along"], "meshes": meshes,
-            "permeability_mm2": known(limit), "error_mm2": known(error), "order": order, "asymmetry": skew}
+    return {
+        "solver": given.solver,
+        "periodic": facts["periodic"],
+        "passages": facts["passages"]["along"],
+        "meshes": meshes,
+        "permeability_mm2": known(limit),
+        "error_mm2": known(error),
+        "order": order,
+        "asymmetry": skew,
+    }
 
 
 def show(result):
     limit, error = (numpy.array(result[name], dtype=float) for name in ("permeability_mm2", "error_mm2"))
     is_one = len(result["meshes"]) == 1
-    print(f"solver: {result['solver']}; {len(result['meshes'])} mesh{'' if is_one else 'es'}, the finest has "
-          f"{result['meshes'][-1]['tets']} tetrahedra")
-    print("permeability, m2" + (" (one mesh: nothing is known of the error)" if is_one else ", extrapolated along x, y, z:"))
+    print(
+        f"solver: {result['solver']}; {len(result['meshes'])} mesh{'' if is_one else 'es'}, the finest has "
+        f"{result['meshes'][-1]['tets']} tetrahedra"
+    )
+    print(
+        "permeability, m2"
+        + (" (one mesh: nothing is known of the error)" if is_one else ", extrapolated along x, y, z:")
+    )
     for row in SQUARE_METRES * limit:
         print("  " + "  ".join("          -" if numpy.isnan(value) else f"{value:11.4e}" for value in row))
     for k in range(3):
@@ -135,22 +174,39 @@ def show(result):
             print(f"  {name}, discretisation error {100 * error[k, k] / limit[k, k]:.2g} % ({how})")
     print(f"asymmetry: {100 * result['asymmetry']:.2g} % of the largest")
     if result["solver"] == "openfoam":
-        print("simpleFoam's viscous stress on tetrahedra keeps an error of some per cent, up to about a tenth, whatever the mesh: it is not in "
-              "these errors. --layers 3 makes it smaller; the own solver does not have it")
+        print(
+            "simpleFoam's viscous stress on tetrahedra keeps an error of some per cent, up to about a tenth, whatever the mesh: it is not in "
+            "these errors. --layers 3 makes it smaller; the own solver does not have it"
+        )
     for axis in AXES:
         if axis not in result["periodic"].split():
-            print(f"the cell is not periodic along {axis}: K{axis}{axis} is that of the cell between two reservoirs; for the others its "
-                  f"faces across {axis} are mirrors")
+            print(
+                f"the cell is not periodic along {axis}: K{axis}{axis} is that of the cell between two reservoirs; for the others its "
+                f"faces across {axis} are mirrors"
+            )
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="permeability", description="Permeability of a unit cell's pore space, with a study of the mesh.",
-                                     epilog="Other options are those of `selvage mesh`.")
+    parser = argparse.ArgumentParser(
+        prog="permeability",
+        description="Permeability of a unit cell's pore space, with a study of the mesh.",
+        epilog="Other options are those of `selvage mesh`.",
+    )
     parser.add_argument("file", help="a text with a `cell`")
     sizes = parser.add_mutually_exclusive_group()
-    sizes.add_argument("--segments", default="10,14,20", metavar="N,..", help="edges round each yarn, one mesh for each number (default: 10,14,20)")
+    sizes.add_argument(
+        "--segments",
+        default="10,14,20",
+        metavar="N,..",
+        help="edges round each yarn, one mesh for each number (default: 10,14,20)",
+    )
     sizes.add_argument("--size", metavar="H,..", help="edge lengths in the input's unit instead")
-    parser.add_argument("--solver", choices=["own", "openfoam"], default="own", help="own: curved elements of second order (default); openfoam: simpleFoam")
+    parser.add_argument(
+        "--solver",
+        choices=["own", "openfoam"],
+        default="own",
+        help="own: curved elements of second order (default); openfoam: simpleFoam",
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON; - is standard output")
     parser.add_argument("--keep", metavar="FOLDER", help="keep meshes and cases there")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
@@ -164,7 +220,9 @@ def main():
             if given.solver == "openfoam":
                 pore_case.check_installed()
             elif any(word.startswith("--layer") for word in others):
-                raise Failure("--layers is for --solver openfoam: our own solver has curved elements of second order, which need none")
+                raise Failure(
+                    "--layers is for --solver openfoam: our own solver has curved elements of second order, which need none"
+                )
             result = study(given, others, folder)
         except (Failure, NotSolved, pore_case.Failure) as failure:
             print(f"permeability: {failure}", file=sys.stderr)

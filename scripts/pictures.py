@@ -57,8 +57,9 @@ def make_pictures(selvage, folder):
     total = 0
     for name, sample, view in PICTURES:
         path = folder / f"{name}.png"
-        done = run(selvage, "view", SAMPLES / sample, "-o", path, "--from", view,
-                   "--size", "{}x{}".format(*PICTURE_SIZE))
+        done = run(
+            selvage, "view", SAMPLES / sample, "-o", path, "--from", view, "--size", "{}x{}".format(*PICTURE_SIZE)
+        )
         if done.returncode != 0:
             sys.exit(f"pictures: {sample} has no picture:\n{done.stderr}")
         shrink(path)
@@ -93,7 +94,7 @@ def subpaths(data):
         if command == "Z":
             continue
         count = 6 if command == "C" else 2
-        numbers = list(map(float, words[at:at + count]))
+        numbers = list(map(float, words[at : at + count]))
         at += count
         if command != "C":
             points.append(tuple(numbers))
@@ -101,7 +102,7 @@ def subpaths(data):
         corners = [points[-1], *zip(numbers[::2], numbers[1::2])]
         for k in range(1, 13):
             t = k / 12
-            basis = ((1 - t)**3, 3 * t * (1 - t)**2, 3 * t * t * (1 - t), t**3)
+            basis = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
             points.append(tuple(sum(b * c[axis] for b, c in zip(basis, corners)) for axis in (0, 1)))
     return points
 

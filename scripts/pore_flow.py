@@ -55,7 +55,12 @@ class PoreFlow:
             part = slice(first, first + AT_ONCE)
             places = self.mesh.nodes[self.mesh.elements[part]]
             count = len(places)
-            a, m, b, f = numpy.zeros((count, 10, 10)), numpy.zeros((count, 4, 4)), numpy.zeros((3, count, 4, 10)), numpy.zeros((count, 10))
+            a, m, b, f = (
+                numpy.zeros((count, 10, 10)),
+                numpy.zeros((count, 4, 4)),
+                numpy.zeros((3, count, 4, 10)),
+                numpy.zeros((count, 10)),
+            )
             at, weights = rule()
             values, slopes = tetrahedron_shapes(at, 10)
             shares, _ = tetrahedron_shapes(at, 4)
@@ -99,7 +104,9 @@ class PoreFlow:
         return sparse.csr_matrix((values, (i, j)), shape=(self.count, self.pressures))
 
     def nodes_of(self, names):
-        return numpy.unique(numpy.concatenate([self.number[self.mesh.patches[name]] for name in names])) if names else []
+        return (
+            numpy.unique(numpy.concatenate([self.number[self.mesh.patches[name]] for name in names])) if names else []
+        )
 
     def solve(self, axis, held):
         """The integral of the velocity over the pores when the force is 1 along `axis`, and how many steps it took. `held`: for
@@ -128,8 +135,14 @@ class PoreFlow:
         def count(_):
             steps[0] += 1
 
-        solution, failed = linalg.minres(system, right, M=linalg.LinearOperator((total, total), precondition), tol=RESIDUAL,
-                                         maxiter=MOST_STEPS, callback=count)
+        solution, failed = linalg.minres(
+            system,
+            right,
+            M=linalg.LinearOperator((total, total), precondition),
+            tol=RESIDUAL,
+            maxiter=MOST_STEPS,
+            callback=count,
+        )
         if failed:
             raise NotSolved(f"the flow is not found after {MOST_STEPS} steps")
         return numpy.array([self.load[free[k]] @ solution[ends[k] : ends[k + 1]] for k in range(3)]), steps[0]
@@ -150,8 +163,17 @@ def two_levels(matrix, interpolation, degree=3):
     coarse = (interpolation.T @ matrix @ interpolation).tocsc()
     factor = linalg.splu(coarse, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     weight = 1 / matrix.diagonal()
-    largest = 1.1 * linalg.eigsh(sparse.diags(weight**0.5) @ matrix @ sparse.diags(weight**0.5), k=1, which="LA", tol=1e-2,
-                                 v0=numpy.ones(matrix.shape[0]), return_eigenvectors=False)[0]
+    largest = (
+        1.1
+        * linalg.eigsh(
+            sparse.diags(weight**0.5) @ matrix @ sparse.diags(weight**0.5),
+            k=1,
+            which="LA",
+            tol=1e-2,
+            v0=numpy.ones(matrix.shape[0]),
+            return_eigenvectors=False,
+        )[0]
+    )
     centre, half = largest * (1 + 0.1) / 2, largest * (1 - 0.1) / 2
 
     def smooth(right, start):

@@ -17,8 +17,13 @@ class PoreMesh:
             self._lines = iter(file.read().splitlines())
         self._names, self._of_surface, self.patches = {}, {}, {}
         self._pairs = []
-        self._sections = {"$PhysicalNames": self._read_names, "$Entities": self._read_entities, "$Nodes": self._read_nodes,
-                          "$Elements": self._read_elements, "$Periodic": self._read_periodic}
+        self._sections = {
+            "$PhysicalNames": self._read_names,
+            "$Entities": self._read_entities,
+            "$Nodes": self._read_nodes,
+            "$Elements": self._read_elements,
+            "$Periodic": self._read_periodic,
+        }
         for line in self._lines:
             if line in self._sections:
                 self._sections[line]()

@@ -81,7 +81,11 @@ class Run:
     @property
     def size(self):
         sizes = CELLS[self.cell]
-        return sizes.voxels[self.level] if self.method == "voxels" else round(sizes.thickness * sizes.shares[self.level], 9)
+        return (
+            sizes.voxels[self.level]
+            if self.method == "voxels"
+            else round(sizes.thickness * sizes.shares[self.level], 9)
+        )
 
     def command(self, selvage, folder, result):
         script = "permeability.py" if self.property == "permeability" else "homogenize.py"
@@ -90,12 +94,24 @@ class Run:
             words += ["--solver", "iterative", "--periodic"]
             words += ["--order", "2"] if self.method == "tetrahedra" else []
             words += ["--physics", "conduction"] if self.property == "conductivity" else []
-        return [sys.executable, f"scripts/{script}", f"samples/benchmark/{self.cell}.txt", *words, "--selvage", selvage,
-                "--keep", str(folder), "--json", str(result)]
+        return [
+            sys.executable,
+            f"scripts/{script}",
+            f"samples/benchmark/{self.cell}.txt",
+            *words,
+            "--selvage",
+            selvage,
+            "--keep",
+            str(folder),
+            "--json",
+            str(result),
+        ]
 
 
 def all_runs(cells, properties, levels):
-    return [Run(cell, *key, level) for cell in cells for key in ORDERS if key[0] in properties for level in range(levels)]
+    return [
+        Run(cell, *key, level) for cell in cells for key in ORDERS if key[0] in properties for level in range(levels)
+    ]
 
 
 class Store:
@@ -128,11 +144,15 @@ class Store:
         meshes.mkdir(parents=True, exist_ok=True)
         started = time.monotonic()
         try:
-            done = subprocess.run(run.command(self.selvage, meshes, found), cwd=ROOT, capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                run.command(self.selvage, meshes, found), cwd=ROOT, capture_output=True, text=True, check=False
+            )
             if done.returncode != 0:
                 raise Failure(f"{run.cell}, {run.name}: " + done.stderr.strip()[-2000:])
             result = json.loads(found.read_text())
-            found.write_text(json.dumps({"key": self.key(run), "seconds": time.monotonic() - started, "result": result}))
+            found.write_text(
+                json.dumps({"key": self.key(run), "seconds": time.monotonic() - started, "result": result})
+            )
             found.replace(path)
         finally:
             found.unlink(missing_ok=True)
@@ -166,8 +186,12 @@ def closed_forms(cell):
     across = outer * array_conduction.array_of_cylinders(kind, share, inner / outer)
     flow = pitch**2 * array_flow.across(kind, share)
     return {
-        "k x": share * inner + (1 - share) * outer, "k y": across, "k z": across,
-        "K x": pitch**2 * array_flow.along(kind, share), "K y": flow, "K z": flow,
+        "k x": share * inner + (1 - share) * outer,
+        "k y": across,
+        "k z": across,
+        "K x": pitch**2 * array_flow.along(kind, share),
+        "K y": flow,
+        "K z": flow,
     }
 
 
@@ -183,18 +207,35 @@ def records_of(cell, results):
     """Of a cell's results (Run -> result) a record for each quantity and method: values and errors by size, and their limit."""
     exact, records = closed_forms(cell), []
     for (prop, method), believed in ORDERS.items():
-        found = sorted(((run, result) for run, result in results.items() if (run.property, run.method) == (prop, method)), key=lambda one: one[0].level)
+        found = sorted(
+            ((run, result) for run, result in results.items() if (run.property, run.method) == (prop, method)),
+            key=lambda one: one[0].level,
+        )
         if len(found) < 2:
             continue
         elements = [elements_of(*one) for one in found]
         values = [quantities_of(*one) for one in found]
         rows = {name: [of_mesh[name] for of_mesh in values] for name in values[0]}
-        for (name, numbers), (limit, errors, order) in zip(rows.items(), errors_of(elements, list(rows.values()), believed)):
-            records.append({
-                "cell": cell, "property": prop, "quantity": name, "unit": UNITS[prop], "method": method,
-                "level": [LEVELS[run.level] for run, _ in found], "size": [run.size for run, _ in found], "elements": elements,
-                "value": numbers, "error": errors, "limit": limit, "order": order, "exact": exact.get(name),
-            })
+        for (name, numbers), (limit, errors, order) in zip(
+            rows.items(), errors_of(elements, list(rows.values()), believed)
+        ):
+            records.append(
+                {
+                    "cell": cell,
+                    "property": prop,
+                    "quantity": name,
+                    "unit": UNITS[prop],
+                    "method": method,
+                    "level": [LEVELS[run.level] for run, _ in found],
+                    "size": [run.size for run, _ in found],
+                    "elements": elements,
+                    "value": numbers,
+                    "error": errors,
+                    "limit": limit,
+                    "order": order,
+                    "exact": exact.get(name),
+                }
+            )
     return records
 
 
@@ -206,12 +247,16 @@ def faults_of(records):
         for level, value, error in zip(record["level"], record["value"], record["error"]):
             for name in ("limit", "exact"):
                 if record[name] is not None and abs(value - record[name]) > error:
-                    faults.append(f"{where}, {level}: {value:.6g} is {abs(value - record[name]):.2g} from the {name} {record[name]:.6g}, and states {error:.2g}")
+                    faults.append(
+                        f"{where}, {level}: {value:.6g} is {abs(value - record[name]):.2g} from the {name} {record[name]:.6g}, and states {error:.2g}"
+                    )
     for cell, quantity in dict.fromkeys((record["cell"], record["quantity"]) for record in records):
         of_one = [record for record in records if (record["cell"], record["quantity"]) == (cell, quantity)]
         intervals = [pair for record in of_one for pair in zip(record["value"], record["error"])]
         if (gap := convergence.apart(intervals)) > 0:
-            faults.append(f"{cell}, {quantity}: no value lies within the errors of all meshes; {gap:.2g} {of_one[0]['unit']} are missing")
+            faults.append(
+                f"{cell}, {quantity}: no value lies within the errors of all meshes; {gap:.2g} {of_one[0]['unit']} are missing"
+            )
     return faults
 
 
@@ -222,7 +267,9 @@ def table(records):
 
 def heading(selvage):
     version = subprocess.run([selvage, "--version"], capture_output=True, text=True, check=True).stdout.splitlines()[0]
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    commit = subprocess.run(
+        ["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    ).stdout.strip()
     return f"Generated by `scripts/reference-cells --write` on {datetime.date.today()}, {version}, commit {commit or 'unknown'}."
 
 
@@ -243,7 +290,10 @@ def compute_all(store, runs):
             wrong.append(str(failure))
             say(f"{label}: failed")
             continue
-        say(f"{label}: {elements_of(run, result)} elements, " + ("kept" if was_there else f"{time.monotonic() - started:.0f} s"))
+        say(
+            f"{label}: {elements_of(run, result)} elements, "
+            + ("kept" if was_there else f"{time.monotonic() - started:.0f} s")
+        )
     return wrong
 
 
@@ -259,10 +309,19 @@ def check(folder):
     except FileNotFoundError as error:
         raise Failure(f"{error.filename} is not there: --write makes it") from error
     wrong = []
-    for cell, prop, method in dict.fromkeys((record["cell"], record["property"], record["method"]) for record in records):
-        own = [record for record in records if (record["cell"], record["property"], record["method"]) == (cell, prop, method)]
+    for cell, prop, method in dict.fromkeys(
+        (record["cell"], record["property"], record["method"]) for record in records
+    ):
+        own = [
+            record
+            for record in records
+            if (record["cell"], record["property"], record["method"]) == (cell, prop, method)
+        ]
         again = errors_of(own[0]["elements"], [record["value"] for record in own], ORDERS[prop, method])
-        if not all(is_near([record["limit"], *record["error"]], [limit, *errors]) for record, (limit, errors, _) in zip(own, again)):
+        if not all(
+            is_near([record["limit"], *record["error"]], [limit, *errors])
+            for record, (limit, errors, _) in zip(own, again)
+        ):
             wrong.append(f"{cell}, {prop}, {method}: limits and errors are not those of the values")
         exact = closed_forms(cell)
         if not all(is_near([record["exact"] or 0], [exact.get(record["quantity"], 0)]) for record in own):
@@ -293,14 +352,37 @@ def arguments():
         "voxels, each with its discretisation error; fails where two do not agree within what they state.",
         epilog="What is computed already is kept in the output folder, and not computed again; Ctrl-C loses one run.",
     )
-    parser.add_argument("--cells", type=words(list(CELLS)), default=list(CELLS), metavar="NAME,..", help="these alone: " + ", ".join(CELLS))
-    parser.add_argument("--only", type=words(properties), default=properties, metavar="PROPERTY,..", help="these alone: " + ", ".join(properties))
+    parser.add_argument(
+        "--cells",
+        type=words(list(CELLS)),
+        default=list(CELLS),
+        metavar="NAME,..",
+        help="these alone: " + ", ".join(CELLS),
+    )
+    parser.add_argument(
+        "--only",
+        type=words(properties),
+        default=properties,
+        metavar="PROPERTY,..",
+        help="these alone: " + ", ".join(properties),
+    )
     parser.add_argument("--quick", action="store_true", help="without the finest meshes")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build" / "reference-cells", metavar="FOLDER",
-                        help="for meshes, results.json and RESULTS.md (default: build/reference-cells)")
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        default=ROOT / "build" / "reference-cells",
+        metavar="FOLDER",
+        help="for meshes, results.json and RESULTS.md (default: build/reference-cells)",
+    )
     action = parser.add_mutually_exclusive_group()
-    action.add_argument("--write", action="store_true", help="renew samples/benchmark/RESULTS.md and results.json, too; what was never computed is `not run` there")
-    action.add_argument("--check", action="store_true", help="compute nothing: do the committed values agree, and is the page theirs?")
+    action.add_argument(
+        "--write",
+        action="store_true",
+        help="renew samples/benchmark/RESULTS.md and results.json, too; what was never computed is `not run` there",
+    )
+    action.add_argument(
+        "--check", action="store_true", help="compute nothing: do the committed values agree, and is the page theirs?"
+    )
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.quick and given.write:

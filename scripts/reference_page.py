@@ -1,7 +1,13 @@
 """The page of scripts/reference-cells: what was computed of the cells of samples/benchmark, as tables."""
 
 LEVELS = ("coarse", "medium", "fine")
-COLUMNS = (("stiffness", "tetrahedra"), ("stiffness", "voxels"), ("conductivity", "tetrahedra"), ("conductivity", "voxels"), ("permeability", "tetrahedra"))
+COLUMNS = (
+    ("stiffness", "tetrahedra"),
+    ("stiffness", "voxels"),
+    ("conductivity", "tetrahedra"),
+    ("conductivity", "voxels"),
+    ("permeability", "tetrahedra"),
+)
 
 METHOD = """Unit cells for whoever has a program of their own: texts, meshes by one command, and what comes out, with errors. All cells repeat along x, y
 and z. C is the stiffness in MPa (xy,xy is a shear modulus), k the conductivity in W/(m K), K the permeability of the pores in mm2.
@@ -40,7 +46,11 @@ def summary_row(cell, records, faults):
     own = [record for record in records if record["cell"] == cell]
     row = [f"[`{cell}`]({cell}.txt)"]
     for prop, method in COLUMNS:
-        of_one = [record for record in own if (record["property"], record["method"]) == (prop, method) and len(record["value"]) == len(LEVELS)]
+        of_one = [
+            record
+            for record in own
+            if (record["property"], record["method"]) == (prop, method) and len(record["value"]) == len(LEVELS)
+        ]
         row.append(f"{percent(of_one[0], -1)} ({of_one[0]['elements'][-1]})" if of_one else "not run")
     if not own:
         return [*row, "not run"]
@@ -53,7 +63,10 @@ def meshes_table(records):
     for key in dict.fromkeys((record["property"], record["method"]) for record in records):
         record = next(one for one in records if (one["property"], one["method"]) == key)
         size = "{:g} along the longest side" if record["method"] == "voxels" else "{:g} mm"
-        told = {level: f"{size.format(record['size'][k])}, {record['elements'][k]} elements, ± {percent(record, k)}" for k, level in enumerate(record["level"])}
+        told = {
+            level: f"{size.format(record['size'][k])}, {record['elements'][k]} elements, ± {percent(record, k)}"
+            for k, level in enumerate(record["level"])
+        }
         rows.append([*key, *(told.get(level, "not run") for level in LEVELS)])
     return rows_of(["property", "by", *LEVELS], rows)
 
@@ -63,15 +76,30 @@ def cell_table(records):
     for record in records:
         by_level = dict(zip(record["level"], record["value"]))
         order, exact = record["order"], record["exact"]
-        rows.append([record["quantity"], record["method"], *(f"{by_level[level]:.5g}" if level in by_level else "not run" for level in LEVELS),
-                     f"{record['limit']:.5g}", f"{order:.1f}" if order else "-", "" if exact is None else f"{exact:.5g}"])
+        rows.append(
+            [
+                record["quantity"],
+                record["method"],
+                *(f"{by_level[level]:.5g}" if level in by_level else "not run" for level in LEVELS),
+                f"{record['limit']:.5g}",
+                f"{order:.1f}" if order else "-",
+                "" if exact is None else f"{exact:.5g}",
+            ]
+        )
     return rows_of(["value", "by", *LEVELS, "extrapolated", "order", "closed form"], rows)
 
 
 def page(first, cells, records, faults):
-    parts = ["# Results of the reference cells\n", first + "\n", METHOD + "\n",
-             "What the finest meshes state, and in brackets their elements:\n",
-             rows_of(["cell", *(", ".join(column) for column in COLUMNS), "do all meshes agree?"], [summary_row(cell, records, faults) for cell in cells])]
+    parts = [
+        "# Results of the reference cells\n",
+        first + "\n",
+        METHOD + "\n",
+        "What the finest meshes state, and in brackets their elements:\n",
+        rows_of(
+            ["cell", *(", ".join(column) for column in COLUMNS), "do all meshes agree?"],
+            [summary_row(cell, records, faults) for cell in cells],
+        ),
+    ]
     if faults:
         parts += ["Where they do not agree:\n", "".join(f"- {fault}\n" for fault in faults)]
     for cell in cells:

@@ -156,8 +156,8 @@ std::vector<double> corners_of(std::span<const Section* const> sections) {
   for (const Section* const section : sections)
     all.insert(all.end(), section->corners.begin(), section->corners.end());
   std::ranges::sort(all);
-  const auto again = std::ranges::unique(all, [](double a, double b) { return b - a < same_t; });
-  all.erase(again.begin(), again.end());
+  all.erase(std::unique(all.begin(), all.end(), [](double a, double b) { return b - a < same_t; }),
+            all.end());
   if (!all.empty() && all.front() + 1 - all.back() < same_t) all.pop_back();
   return all;
 }

@@ -13,7 +13,10 @@ import plots
 LESS, MORE = "less", "more"
 # Columns of our own figures, and what is better.
 FIGURES = [
-    (re.compile(r"of them until|SparseLU of|published|CGAL, s|of that tessellation"), None),  # a peer's, or a part of one that is there
+    (
+        re.compile(r"of them until|SparseLU of|published|CGAL, s|of that tessellation"),
+        None,
+    ),  # a peer's, or a part of one that is there
     (re.compile(r"^(\w+, )?(ms|s|us|ns)$|, (ms|s)$|processor's s|^(ms|us|ns) a |^s a |memory, MiB|^MB$"), LESS),
     (re.compile(r"^times the (bare loop's time|first)$|^to the first$|^to 50 x 50$"), LESS),
     (re.compile(r"^(MB|yarns|128s|million doubles|tetrahedra)/s$|^times .*'s speed$"), MORE),
@@ -50,8 +53,11 @@ class Table:
     def words(self, row):
         """{column: cell} of what the row is of, but for its size. Other numbers are what the run found."""
         size = self.size_column()
-        return {k: cell if self.heads[k] != "threads" else f"threads {cell}" for k, cell in enumerate(row[:self.key_columns])
-                if k != size and (self.heads[k] in ("threads", "size, mm") or not re.fullmatch(r"[\d.]*", cell))}
+        return {
+            k: cell if self.heads[k] != "threads" else f"threads {cell}"
+            for k, cell in enumerate(row[: self.key_columns])
+            if k != size and (self.heads[k] in ("threads", "size, mm") or not re.fullmatch(r"[\d.]*", cell))
+        }
 
     def key(self, row):
         """By which a row is found on another page. Where an edge length is given, how many triangles that made is what the run found."""
@@ -60,7 +66,11 @@ class Table:
 
     def name(self, row):
         """The same of all sizes."""
-        cells = [(cell if cell.startswith("threads ") else SIZE.sub("", cell).strip()) for k, cell in self.words(row).items() if self.heads[k] not in ("size, mm",)]
+        cells = [
+            (cell if cell.startswith("threads ") else SIZE.sub("", cell).strip())
+            for k, cell in self.words(row).items()
+            if self.heads[k] not in ("size, mm",)
+        ]
         cells += [] if self.size_column() is None else [SIZE.sub("", row[self.size_column()]).strip()]
         return ", ".join(cell for cell in cells if cell)
 
@@ -70,7 +80,7 @@ class Table:
     def figures(self, row):
         """{head: number} of ours. Two columns of one name are told apart by what stands before them."""
         found, before = {}, ""
-        for head, cell in list(zip(self.heads, row))[self.key_columns:]:
+        for head, cell in list(zip(self.heads, row))[self.key_columns :]:
             name = head if head not in found else f"{head} ({before})"
             if head.endswith((", s", ", ms")):
                 before = head
@@ -97,8 +107,12 @@ def tables_of(text):
 
 def rows_of(text, ours):
     """{(section, key): (figures, the cells before them)} of our rows, or of the peers'."""
-    return {(table.section.split(":")[0], table.key(row)): (table.figures(row), tuple(row[:table.key_columns]))
-            for table in tables_of(text) for row in table.rows if table.is_ours(row) == ours}
+    return {
+        (table.section.split(":")[0], table.key(row)): (table.figures(row), tuple(row[: table.key_columns]))
+        for table in tables_of(text)
+        for row in table.rows
+        if table.is_ours(row) == ours
+    }
 
 
 def name_of(head):
@@ -133,10 +147,15 @@ def worse_rows(before, now):
                 continue
             compared += 1
             worst = None
-            shares = {name: value / old[name] if better(name_of(name)) == LESS else old[name] / value
-                      for name, value in table.figures(row).items() if old.get(name) and value}
-            shares = {name: share / slow if TIMES.search(name_of(name)) or RATES.search(name_of(name)) else share
-                      for name, share in shares.items()}
+            shares = {
+                name: value / old[name] if better(name_of(name)) == LESS else old[name] / value
+                for name, value in table.figures(row).items()
+                if old.get(name) and value
+            }
+            shares = {
+                name: share / slow if TIMES.search(name_of(name)) or RATES.search(name_of(name)) else share
+                for name, share in shares.items()
+            }
             growing = {name for name in shares if GROWTH.match(name_of(name))}
             gains = len(shares) > len(growing) and all(shares[name] < 1 for name in shares.keys() - growing)
             for name, share in shares.items():
@@ -164,8 +183,12 @@ def curves(text):
             for time in times:
                 what = ", ".join(word for word in (table.name(row), table.heads[time]) if word)
                 if re.fullmatch(r"\d+(\.\d+)?", row[time]) and float(row[time]) > 0:
-                    found.setdefault((table.section, what), []).append((int(width) * int(height or 1), float(row[time])))
-    return [(section, what, sorted(points)) for (section, what), points in found.items() if len({n for n, _ in points}) > 1]
+                    found.setdefault((table.section, what), []).append(
+                        (int(width) * int(height or 1), float(row[time]))
+                    )
+    return [
+        (section, what, sorted(points)) for (section, what), points in found.items() if len({n for n, _ in points}) > 1
+    ]
 
 
 def exponent(points):
@@ -180,14 +203,22 @@ def summary(before, commit, now):
     if before:
         found, compared = worse_rows(before, now)
         slow, peers = slowness(before, now)
-        lines.append(f"Peers on the same tasks took {slow:.2f} times as long as in {commit} (the median of {peers} rows): times and speeds count by "
-                     "what they are beyond that." if peers else "No peer has the same task as before: times are compared as they are.")
+        lines.append(
+            f"Peers on the same tasks took {slow:.2f} times as long as in {commit} (the median of {peers} rows): times and speeds count by "
+            "what they are beyond that."
+            if peers
+            else "No peer has the same task as before: times are compared as they are."
+        )
         lines.append("")
-        lines.append(f"{len(found)} of {compared} rows are worse than in {commit} by more than {BOUND:.0%}"
-                     + (":" if found else "."))
+        lines.append(
+            f"{len(found)} of {compared} rows are worse than in {commit} by more than {BOUND:.0%}"
+            + (":" if found else ".")
+        )
         lines.append("")
-        lines += [f"- **{section.split(':')[0]}**, {', '.join(key)}: {figure} {old:g} -> {value:g}"
-                  for section, key, figure, old, value in found]
+        lines += [
+            f"- **{section.split(':')[0]}**, {', '.join(key)}: {figure} {old:g} -> {value:g}"
+            for section, key, figure, old, value in found
+        ]
         lost = lost_rows(before, now)
         if lost:
             lines += ["", f"Rows of {commit} that are here no more:", ""]

@@ -94,8 +94,7 @@ Mat3 stress_of(const Mat3& strain, const SolvedDeck::Section& section, const Sol
 class NodeMeans {
  public:
   NodeMeans(const FieldMesh& mesh, int components)
-      : mesh_(mesh),
-        components_(components),
+      : components_(components),
         sums_(mesh.nodes.size() * static_cast<std::size_t>(components)),
         counts_(mesh.nodes.size()) {}
   template <class Values>
@@ -114,7 +113,6 @@ class NodeMeans {
   }
 
  private:
-  const FieldMesh& mesh_;
   int components_;
   std::vector<double> sums_;
   std::vector<double> counts_;

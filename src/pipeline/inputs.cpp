@@ -185,22 +185,11 @@ class Expansion {
       source.error().kind = Kind::usage;
       return source.error();
     }
+    const Result<std::vector<std::string_view>> names = names_in_list(source->bytes(), name);
+    if (!names) return names.error();
     from_folder_ = true;
-    int number = 0;
-    for (std::string_view line : split(source->bytes(), '\n')) {
-      ++number;
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      if (line.empty()) continue;
-      const auto refuse = [&](std::string what) {
-        return error(Kind::usage, std::move(what), {.file = name, .place = {number, 1}});
-      };
-      if (line.front() == '@') return refuse("a list cannot name another list");
-      if (line.find('\0') != std::string_view::npos)
-        return refuse("this line has a zero byte: a list is a text with the path of an input in each line");
-      if (line.size() >= PATH_MAX)
-        return refuse(fmt::format("this line has {} bytes, and a path less than {}", line.size(), PATH_MAX));
-      if (Status status = add(std::string(line)); !status.ok()) return status;
-    }
+    for (const std::string_view listed : *names)
+      if (Status status = add(std::string(listed)); !status.ok()) return status;
     return {};
   }
 
@@ -232,6 +221,26 @@ class Expansion {
 };
 
 }  // namespace
+
+Result<std::vector<std::string_view>> names_in_list(std::string_view bytes, const std::string& list) {
+  std::vector<std::string_view> names;
+  int number = 0;
+  for (std::string_view line : split(bytes, '\n')) {
+    ++number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty()) continue;
+    const auto refuse = [&](std::string what) {
+      return error(Kind::usage, std::move(what), {.file = list, .place = {number, 1}});
+    };
+    if (line.front() == '@') return refuse("a list cannot name another list");
+    if (line.find('\0') != std::string_view::npos)
+      return refuse("this line has a zero byte: a list is a text with the path of an input in each line");
+    if (line.size() >= PATH_MAX)
+      return refuse(fmt::format("this line has {} bytes, and a path less than {}", line.size(), PATH_MAX));
+    names.push_back(line);
+  }
+  return names;
+}
 
 void Inputs::add(const Input& input) {
   std::string record;

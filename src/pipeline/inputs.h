@@ -55,6 +55,10 @@ struct InputList {
   bool one_file = false;       // the command line names exactly one file (no folder, no list)
 };
 
+// The names that the bytes of `@list` hold, one a line, in their order; they stay valid while the bytes do.
+// Errors (usage), at their line: a list in a list, what is no path.
+Result<std::vector<std::string_view>> names_in_list(std::string_view bytes, const std::string& list);
+
 // Symbolic links in a folder are followed to what is in it, and further only where the options allow files
 // outside. Errors (usage): a list that cannot be read, or has what is no path, "-" twice, nothing named.
 // `diff` and `edit` take files only, as they are named.

@@ -13,7 +13,6 @@
 #include "core/machine.h"
 #include "core/module.h"
 #include "core/output.h"
-#include "core/process.h"
 #include "fem/worker_process.h"
 
 namespace selvage::pipeline {

@@ -19,4 +19,4 @@ def elements(path, kind):
                     words = next(lines).split()
                     if words[1] == kind:
                         first = 3 + int(words[2])
-                        yield words[4], [nodes[n] for n in words[first:first + CORNERS[kind]]]
+                        yield words[4], [nodes[n] for n in words[first : first + CORNERS[kind]]]

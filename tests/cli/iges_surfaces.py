@@ -37,7 +37,7 @@ def combined(knots, degree, places, points):
 
 
 def places(knots, degree, each):
-    breaks = np.unique(knots[degree:len(knots) - degree])
+    breaks = np.unique(knots[degree : len(knots) - degree])
     return np.concatenate([np.linspace(a, b, each, endpoint=False) for a, b in zip(breaks, breaks[1:])] + [breaks[-1:]])
 
 
@@ -49,7 +49,7 @@ def surfaces(path, each_u=32, each_v=12):
         k1, k2, m1, m2 = map(int, words[1:5])
         numbers = np.array([float(word.replace("D", "E")) for word in words[10:]])
         cuts = np.cumsum([k1 + m1 + 2, k2 + m2 + 2, (k1 + 1) * (k2 + 1), 3 * (k1 + 1) * (k2 + 1)])
-        knots_u, knots_v, weights, points = np.split(numbers[:cuts[-1]], cuts[:-1])
+        knots_u, knots_v, weights, points = np.split(numbers[: cuts[-1]], cuts[:-1])
         weights = weights.reshape(k2 + 1, k1 + 1, 1)
         homogeneous = np.concatenate([points.reshape(k2 + 1, k1 + 1, 3) * weights, weights], axis=2)
         rows = combined(knots_v, m2, places(knots_v, m2, each_v), homogeneous)

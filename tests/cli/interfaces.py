@@ -102,8 +102,13 @@ def modes(point, cell, count):
     x, y, z = point - cell.mean(axis=0)
     if count == "block":
         return np.array([[x, 0, 0, y / 2, z / 2, 0], [0, y, 0, x / 2, 0, z / 2], [0, 0, z, 0, x / 2, y / 2]])
-    return np.array([[x, 0, y / 2, z * x, 0, z * y / 2], [0, y, x / 2, 0, z * y, z * x / 2],
-                     [0, 0, 0, -x * x / 2, -y * y / 2, -x * y / 2]])
+    return np.array(
+        [
+            [x, 0, y / 2, z * x, 0, z * y / 2],
+            [0, y, x / 2, 0, z * y, z * x / 2],
+            [0, 0, 0, -x * x / 2, -y * y / 2, -x * y / 2],
+        ]
+    )
 
 
 # --- stiffness of the whole, put together here: C3D4 and COH3D6
@@ -154,7 +159,7 @@ def wedge_matrices(deck, numbers, across, along):
     normal /= 2 * area[:, None]
     result = np.zeros((len(numbers), 18, 18))
     traction = along * np.eye(3) + (across - along) * normal[:, :, None] * normal[:, None, :]
-    for share in ([.5, .5, 0], [0, .5, .5], [.5, 0, .5]):
+    for share in ([0.5, 0.5, 0], [0, 0.5, 0.5], [0.5, 0, 0.5]):
         jump = np.kron(np.concatenate([-np.array(share), share]), np.eye(3))  # 3 x 18: second side less first
         result += np.einsum("ia,nij,jb,n->nab", jump, traction, jump, area / 3, optimize=True)
     return result
@@ -167,20 +172,23 @@ class Solved:
         self.deck, drivers = deck, deck.drivers()
         count = max(deck.nodes) + 1
         rows, columns, values = [], [], []
+
         def add(numbers, elements, matrices):
             nodes = np.array([elements[e] for e in numbers])
             dof = (3 * nodes[:, :, None] + np.arange(3)).reshape(len(nodes), -1)
             rows.append(np.repeat(dof, dof.shape[1], axis=1).ravel())
             columns.append(np.tile(dof, dof.shape[1]).ravel())
             values.append(matrices.ravel())
+
         for name, material, is_oriented in deck.sections:
             numbers = deck.regions[name]
             add(numbers, deck.solids, solid_matrices(deck, numbers, deck.materials[material]["elastic"], is_oriented))
         for name, material in deck.layer_sections:
             across, along, _ = deck.materials[material]["traction"]
             add(deck.layers[name], deck.wedges, wedge_matrices(deck, deck.layers[name], across, along))
-        whole = scipy.sparse.coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
-                                        shape=(3 * count, 3 * count)).tocsr()
+        whole = scipy.sparse.coo_matrix(
+            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(3 * count, 3 * count)
+        ).tocsr()
         keep, given = self.conditions(count, drivers)
         free = (keep.T @ whole @ keep).tocsc()
         used = np.flatnonzero(np.abs(free.diagonal()) > 0)

@@ -74,8 +74,13 @@ class Page:
             points = (self.numbers("<u2", at, 3 * count).reshape(count, 3) + np.array(origin)) * step
             normals = self.numbers("i1", at + 6 * count, 3 * count).reshape(count, 3) / 127
             points = self.place(yarn, points)
-            tubes.append(Tube(points[:grid].reshape(rows, columns, 3),
-                              (normals[:grid] @ self.motions[yarn][:, :3].T).reshape(rows, columns, 3), points[grid:]))
+            tubes.append(
+                Tube(
+                    points[:grid].reshape(rows, columns, 3),
+                    (normals[:grid] @ self.motions[yarn][:, :3].T).reshape(rows, columns, 3),
+                    points[grid:],
+                )
+            )
         return tubes
 
     def ribbons(self, yarn, level):
@@ -92,8 +97,11 @@ class Page:
         """Points, triangles, and the region of each triangle."""
         skin = self.data["skin"]
         points = self.numbers("<f4", skin["points"], 3 * skin["point_count"]).reshape(-1, 3) + self.centre
-        return (points, self.numbers("<u4", skin["triangles"], 3 * skin["triangle_count"]).reshape(-1, 3),
-                self.numbers("<u4", skin["region_of"], skin["triangle_count"]))
+        return (
+            points,
+            self.numbers("<u4", skin["triangles"], 3 * skin["triangle_count"]).reshape(-1, 3),
+            self.numbers("<u4", skin["region_of"], skin["triangle_count"]),
+        )
 
     def field(self, name, step=None):
         """Of the first step that has it, or of this one."""

@@ -22,7 +22,8 @@ class Typed(tuple):
 
 UNSET, DERIVED = Enum("$"), Enum("*")
 
-TOKEN = re.compile(r"""
+TOKEN = re.compile(
+    r"""
     (?P<space>(?:[ \n]|/\*.*?\*/)+)
   | (?P<string>'(?:[^'\n]|'')*')
   | (?P<real>[+-]?[0-9]+\.[0-9]*(?:E[+-]?[0-9]+)?)
@@ -30,7 +31,9 @@ TOKEN = re.compile(r"""
   | (?P<ref>\#[1-9][0-9]*)
   | (?P<enum>\.[A-Z_][A-Z0-9_]*\.)
   | (?P<word>[A-Z_][A-Z0-9_-]*)
-  | (?P<sign>[$*(),;=])""", re.VERBOSE | re.DOTALL)
+  | (?P<sign>[$*(),;=])""",
+    re.VERBOSE | re.DOTALL,
+)
 CODES = re.compile(r"\\X2\\((?:[0-9A-F]{4})+)\\X0\\|\\X4\\((?:[0-9A-F]{8})+)\\X0\\")
 
 
@@ -196,7 +199,10 @@ SCHEMA = {
     "UNCERTAINTY_MEASURE_WITH_UNIT": "M:LENGTH_MEASURE @LENGTH_UNIT S S$",
     "LENGTH_MEASURE_WITH_UNIT": "M:LENGTH_MEASURE @LENGTH_UNIT",
     "CONVERSION_BASED_UNIT": "S @LENGTH_MEASURE_WITH_UNIT",
-    "LENGTH_UNIT": "", "MASS_UNIT": "", "PLANE_ANGLE_UNIT": "", "SOLID_ANGLE_UNIT": "",
+    "LENGTH_UNIT": "",
+    "MASS_UNIT": "",
+    "PLANE_ANGLE_UNIT": "",
+    "SOLID_ANGLE_UNIT": "",
     "NAMED_UNIT": "@DIMENSIONAL_EXPONENTS*",
     "SI_UNIT": "E$ E",
     "DIMENSIONAL_EXPONENTS": "R R R R R R R",
@@ -236,7 +242,11 @@ SCHEMA = {
 }
 # Complex entities, as the program has them: rational splines come apart into their supertypes.
 IN_PARTS = {
-    "BOUNDED_CURVE": "", "CURVE": "", "GEOMETRIC_REPRESENTATION_ITEM": "", "BOUNDED_SURFACE": "", "SURFACE": "",
+    "BOUNDED_CURVE": "",
+    "CURVE": "",
+    "GEOMETRIC_REPRESENTATION_ITEM": "",
+    "BOUNDED_SURFACE": "",
+    "SURFACE": "",
     "REPRESENTATION_ITEM": "S",
     "B_SPLINE_CURVE": "I [@CARTESIAN_POINT] E E E",
     "B_SPLINE_CURVE_WITH_KNOTS": "[I] [R] E",
@@ -281,9 +291,16 @@ def check(file):
             kinds = table[name].split()
             if len(kinds) != len(values) or not all(map(fits, values, kinds)):
                 raise Wrong(f"#{number}: {name}{values} is not {kinds}")
-    roots = {"DERIVED_UNIT","APPLICATION_PROTOCOL_DEFINITION", "PRODUCT_RELATED_PRODUCT_CATEGORY", "SHAPE_DEFINITION_REPRESENTATION",
-             "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION",
-             "PRESENTATION_LAYER_ASSIGNMENT", "PROPERTY_DEFINITION_REPRESENTATION"}
+    roots = {
+        "DERIVED_UNIT",
+        "APPLICATION_PROTOCOL_DEFINITION",
+        "PRODUCT_RELATED_PRODUCT_CATEGORY",
+        "SHAPE_DEFINITION_REPRESENTATION",
+        "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION",
+        "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION",
+        "PRESENTATION_LAYER_ASSIGNMENT",
+        "PROPERTY_DEFINITION_REPRESENTATION",
+    }
     for number, parts in file.entities.items():
         if number not in used and not roots & set(parts):
             raise Wrong(f"#{number} {'+'.join(parts)}: nothing refers to it")

@@ -13,7 +13,7 @@ from unit_cell import EDGES, shape_slopes
 
 VOIGT = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 # Four points, as Abaqus and CalculiX integrate a C3D10.
-A, B = (5 + 3 * 5 ** 0.5) / 20, (5 - 5 ** 0.5) / 20
+A, B = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
 FOUR = [((B, B, B), 1 / 24), ((A, B, B), 1 / 24), ((B, A, B), 1 / 24), ((B, B, A), 1 / 24)]
 
 
@@ -44,8 +44,11 @@ def points_of_elements(places):
             slope = shape_slopes(*at)
             values = np.concatenate([shares * (2 * shares - 1), [4 * shares[a] * shares[b] for a, b in EDGES]])
         frame = np.einsum("ai,nac->nic", slope, places)  # rows: the place by each coordinate of the element
-        yield (strains_of(np.einsum("nci,ai->nac", np.linalg.inv(frame), slope)), np.einsum("a,nac->nc", values, places),
-               weight * np.linalg.det(frame))
+        yield (
+            strains_of(np.einsum("nci,ai->nac", np.linalg.inv(frame), slope)),
+            np.einsum("a,nac->nc", values, places),
+            weight * np.linalg.det(frame),
+        )
 
 
 def stiffness_in_space(model, numbers):

@@ -62,7 +62,10 @@ class PolyMesh:
             found.append("a cell is open")
         if self.volumes().min() <= 0:
             found.append("a cell has no volume")
-        if np.bincount(np.concatenate([self.owner, self.neighbour])).tolist() != [4] * (self.cells - wedges) + [5] * wedges:
+        if (
+            np.bincount(np.concatenate([self.owner, self.neighbour])).tolist()
+            != [4] * (self.cells - wedges) + [5] * wedges
+        ):
             found.append("a cell has not as many faces as it should")
         if set(self.faces.ravel()) != set(range(len(self.points))):
             found.append("a point is in no face")
@@ -89,7 +92,9 @@ class PolyMesh:
             return [f"{name} and {other} are not in the same order"]
         # The first corners are opposite each other, the others run the other way round.
         moved = self.points[self.faces[here]] + step
-        turned = np.where(self.is_triangle[there][:, None], self.faces[there][:, [0, 2, 1, 1]], self.faces[there][:, [0, 3, 2, 1]])
+        turned = np.where(
+            self.is_triangle[there][:, None], self.faces[there][:, [0, 2, 1, 1]], self.faces[there][:, [0, 3, 2, 1]]
+        )
         if np.abs(self.points[turned] - moved).max() > near:
             return [f"{name} and {other} do not begin at the same corners"]
         return []

@@ -76,8 +76,14 @@ def run(*arguments, **options):
 
 
 def start(*arguments, **options):
-    options = {"env": environment(), "stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE,
-               "text": True, **options}
+    options = {
+        "env": environment(),
+        "stdin": subprocess.DEVNULL,
+        "stdout": subprocess.PIPE,
+        "stderr": subprocess.PIPE,
+        "text": True,
+        **options,
+    }
     return subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
 
 

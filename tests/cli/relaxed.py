@@ -27,9 +27,12 @@ class Yarn:
 
     def __init__(self, block):
         self.name = re.match(r'yarn\s+("[^"]*"|\S+)', block)[1].strip('"')
-        self.statements = {line.split()[0]: line.strip() for line in block.splitlines()[1:] if line.startswith("  ")
-                           and line[2].isalpha() and line.split()[0] not in ("grid", "end")}
-        body = block[block.index("  grid"):].splitlines()
+        self.statements = {
+            line.split()[0]: line.strip()
+            for line in block.splitlines()[1:]
+            if line.startswith("  ") and line[2].isalpha() and line.split()[0] not in ("grid", "end")
+        }
+        body = block[block.index("  grid") :].splitlines()
         sections, count = map(int, body[0].split()[1:3])
         degree = {"along": min(3, sections - 1), "round": 2}
         knots = {}
@@ -55,17 +58,23 @@ class Yarn:
         self.points, self.weights = rows[:, :, :3], rows[:, :, 3]
         self.degree_v, self.degree_u = degree["along"], degree["round"]
         if is_ring and "along" not in knots:  # the closed form along: its sections go on
-            self.points = np.concatenate([self.points, self.points[:self.degree_v]])
-            self.weights = np.concatenate([self.weights, self.weights[:self.degree_v]])
+            self.points = np.concatenate([self.points, self.points[: self.degree_v]])
+            self.weights = np.concatenate([self.weights, self.weights[: self.degree_v]])
             knots["along"] = list(map(float, range(sections + 2 * self.degree_v + 1)))
-        self.knots_v = knots.get("along") or [0.0] * self.degree_v + list(range(sections - self.degree_v + 1)) + [
-            float(sections - self.degree_v)] * self.degree_v
+        self.knots_v = (
+            knots.get("along")
+            or [0.0] * self.degree_v
+            + list(range(sections - self.degree_v + 1))
+            + [float(sections - self.degree_v)] * self.degree_v
+        )
         if is_open:
-            self.knots_u = knots.get("round") or [0.0] * self.degree_u + list(
-                np.linspace(0, 1, count - self.degree_u + 1)) + [1.0] * self.degree_u
+            self.knots_u = (
+                knots.get("round")
+                or [0.0] * self.degree_u + list(np.linspace(0, 1, count - self.degree_u + 1)) + [1.0] * self.degree_u
+            )
         else:  # the closed quadratic: its control points go on round
-            self.points = np.concatenate([self.points, self.points[:, :self.degree_u]], axis=1)
-            self.weights = np.concatenate([self.weights, self.weights[:, :self.degree_u]], axis=1)
+            self.points = np.concatenate([self.points, self.points[:, : self.degree_u]], axis=1)
+            self.weights = np.concatenate([self.weights, self.weights[:, : self.degree_u]], axis=1)
             self.knots_u = list(range(count + 2 * self.degree_u + 1))
 
     def domain(self, knots, degree):
@@ -154,8 +163,13 @@ def crossings(p, q, same=False, apart=0.0):
     along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])
     found = []
     for i, k in near_blocks(p, q):
-        p0, p1, q0, q1 = p[i:i + BLOCK, None], p[i + 1:i + BLOCK + 1, None], q[None, k:k + BLOCK], q[None, k + 1:k + BLOCK + 1]
-        p0, q0 = p0[:p1.shape[0]], q0[:, :q1.shape[1]]
+        p0, p1, q0, q1 = (
+            p[i : i + BLOCK, None],
+            p[i + 1 : i + BLOCK + 1, None],
+            q[None, k : k + BLOCK],
+            q[None, k + 1 : k + BLOCK + 1],
+        )
+        p0, q0 = p0[: p1.shape[0]], q0[:, : q1.shape[1]]
         d, e, r = p1 - p0, q1 - q0, q0 - p0
         turn = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -163,7 +177,7 @@ def crossings(p, q, same=False, apart=0.0):
             u = (r[..., 0] * d[..., 1] - r[..., 1] * d[..., 0]) / turn
         hit = (s >= 0) & (s < 1) & (u >= 0) & (u < 1)
         if same:
-            hit &= along[None, k:k + hit.shape[1]] - along[i:i + hit.shape[0], None] > apart
+            hit &= along[None, k : k + hit.shape[1]] - along[i : i + hit.shape[0], None] > apart
         for m, n in np.argwhere(hit):
             on_p, on_q = p0[m, 0] + s[m, n] * d[m, 0], q0[0, n] + u[m, n] * e[0, n]
             found.append((on_p[0], on_p[1], np.sign(turn[m, n]), np.sign(on_p[2] - on_q[2])))
@@ -178,8 +192,12 @@ def near_blocks(p, q):
     boxes = []
     for line in (p, q):
         starts = range(0, len(line) - 1, BLOCK)
-        boxes.append((np.array([line[k:k + BLOCK + 1, :2].min(axis=0) for k in starts]),
-                      np.array([line[k:k + BLOCK + 1, :2].max(axis=0) for k in starts])))
+        boxes.append(
+            (
+                np.array([line[k : k + BLOCK + 1, :2].min(axis=0) for k in starts]),
+                np.array([line[k : k + BLOCK + 1, :2].max(axis=0) for k in starts]),
+            )
+        )
     (low_p, high_p), (low_q, high_q) = boxes
     meet = ((low_p[:, None] <= high_q[None]) & (low_q[None] <= high_p[:, None])).all(axis=2)
     return np.argwhere(meet) * BLOCK
@@ -232,8 +250,15 @@ def interlacing_changes(before, after, tube=False):
     for i, a in enumerate(names):
         for b in names[i:]:
             turns = [2 * np.pi * radius * k for k in range(-4, 5)] if tube else [0.0]
-            found = [np.concatenate([crossings(state[a], state[b] + [turn, 0, 0], a == b and turn == 0.0, 1.5 * width)
-                                     for turn in turns]) for state in (lines, moved)]
+            found = [
+                np.concatenate(
+                    [
+                        crossings(state[a], state[b] + [turn, 0, 0], a == b and turn == 0.0, 1.5 * width)
+                        for turn in turns
+                    ]
+                )
+                for state in (lines, moved)
+            ]
             count += len(found[0])
             if not same_crossings(*found, near):
                 changed.append((a, b))

@@ -97,7 +97,9 @@ class Shapes:
 
     def spline_face(self, parts):
         if len(parts) == 1:
-            _, degree_u, degree_v, rows, _, _, _, _, many_u, many_v, values_u, values_v, _ = parts["B_SPLINE_SURFACE_WITH_KNOTS"]
+            _, degree_u, degree_v, rows, _, _, _, _, many_u, many_v, values_u, values_v, _ = parts[
+                "B_SPLINE_SURFACE_WITH_KNOTS"
+            ]
             weights = np.ones((len(rows), len(rows[0])))
         else:
             degree_u, degree_v, rows, *_ = parts["B_SPLINE_SURFACE"]
@@ -134,7 +136,7 @@ class Shapes:
                 finer *= 2
                 if finer > 64:
                     raise Wrong("the area of a face does not converge")
-                before, area = area, over(breaks_u[i:i + 2], breaks_v[j:j + 2], finer)[0].area
+                before, area = area, over(breaks_u[i : i + 2], breaks_v[j : j + 2], finer)[0].area
                 change = abs(area - before)
             areas[i, j] = area
         sums.area = areas.sum()
@@ -172,8 +174,10 @@ class Shapes:
             for edge, is_forward in loop:
                 _, first, last, curve, same = self.file.one(edge, "EDGE_CURVE")
                 _, _, start, end = self.curve(curve)
-                gaps = [np.linalg.norm(self.point(self.file.one(vertex, "VERTEX_POINT")[1]) - at)
-                        for vertex, at in ((first, start), (last, end))]
+                gaps = [
+                    np.linalg.norm(self.point(self.file.one(vertex, "VERTEX_POINT")[1]) - at)
+                    for vertex, at in ((first, start), (last, end))
+                ]
                 if same != ".T." or max(gaps) > 1e-13 * np.abs(start).max():
                     raise Wrong(f"#{edge}: its vertices are not its ends, by {max(gaps)}")
                 ends.append((first, last) if is_forward else (last, first))
@@ -185,7 +189,7 @@ class Shapes:
                 uses.setdefault(edge, []).append(is_forward)
             turned = -1 if sense == ".F." else 1
             parts = self.file.entities[surface]
-            sums, normal = (self.plane_face(parts["PLANE"][1], loop) if "PLANE" in parts else self.spline_face(parts))
+            sums, normal = self.plane_face(parts["PLANE"][1], loop) if "PLANE" in parts else self.spline_face(parts)
             total.add(Sums(sums.area, turned * sums.volume, turned * sums.first))
             vector += turned * normal
         return total, vector
@@ -231,7 +235,7 @@ class Products:
             kind, _, target = file.one(definition, "PROPERTY_DEFINITION")
             for item in file.one(representation, "REPRESENTATION")[1]:
                 parts = file.entities[item]
-                (name, *values), = parts.values()
+                ((name, *values),) = parts.values()
                 self.said.setdefault(self.of_shape.get(target, target), {})[kind, name] = values[0]
 
     def motion(self, ref):
@@ -251,7 +255,7 @@ class Products:
 
     def solid(self, definition):
         """The item of a part; none of an assembly."""
-        (_, items, _), = self.file.entities[self.representation[definition]].values()
+        ((_, items, _),) = self.file.entities[self.representation[definition]].values()
         shapes = [i for i in items if "AXIS2_PLACEMENT_3D" not in self.file.entities[i]]
         return shapes[0] if shapes else None
 

@@ -35,7 +35,9 @@ class Isolation(Case):
 
     def test_a_hanging_input_is_stopped(self):
         message = self.fails(1, "convert", self.stuck, GRID, "--to", "iges", "-o", self.out, "--timeout", "0.5")
-        self.assertIn(f"{self.stuck}: error: this input was stopped: not done within its 0.5 s; --timeout gives it more", message)
+        self.assertIn(
+            f"{self.stuck}: error: this input was stopped: not done within its 0.5 s; --timeout gives it more", message
+        )
         self.assertEqual(list(files_below(self.out)), ["plain4_grid.igs"])
 
     def test_a_crash_costs_one_input(self):
@@ -50,24 +52,33 @@ class Isolation(Case):
 
     def test_texts_have_a_time_limit_of_their_own(self):
         """The signal of the limit comes from here: nobody waits ten minutes for it."""
-        process = start("mesh", SAMPLES / "cell_twill.txt", "--matrix", "--size", "0.02", "-o", self.folder / "x.inp", "--quiet")
+        process = start(
+            "mesh", SAMPLES / "cell_twill.txt", "--matrix", "--size", "0.02", "-o", self.folder / "x.inp", "--quiet"
+        )
         self.addCleanup(process.kill)
-        worker, = self.wait_for_children(process, 1)
+        (worker,) = self.wait_for_children(process, 1)
         while seconds_of(worker) < 0.5:
             self.assertIsNone(process.poll(), "ended too early")
             time.sleep(0.01)
         os.kill(worker, signal.SIGALRM)
         _, message = process.communicate()
         self.assertEqual(process.returncode, 1)
-        self.assertIn("cell_twill.txt: error: this input was stopped: not done within its 600 s; --timeout gives it more", message)
-        self.assertIn("(default: 600 for texts, 300 for formats of other programs)", " ".join(run("mesh", "--help").stdout.split()))
+        self.assertIn(
+            "cell_twill.txt: error: this input was stopped: not done within its 600 s; --timeout gives it more", message
+        )
+        self.assertIn(
+            "(default: 600 for texts, 300 for formats of other programs)",
+            " ".join(run("mesh", "--help").stdout.split()),
+        )
 
     def test_few_descriptors(self):
         """Where the system has none left, that is said, and not that something is forbidden."""
         ends = set()
         for count in range(3, 16):
+
             def limit(count=count):
                 resource.setrlimit(resource.RLIMIT_NOFILE, (count, count))
+
             done = run("info", RING, preexec_fn=limit)
             ends.add(done.returncode)
             self.assertNotIn("denied", done.stderr, count)
@@ -91,8 +102,10 @@ class Isolation(Case):
     def test_memory_that_ends_in_a_library(self):
         """The exception of a module cannot pass into the program, which says what helps all the same."""
         wide = self.folder / "wide.txt"
-        wide.write_text("fabric 1\nthread a\n diameter 0.4\nend\n"
-                        "warpknit\n bar a 1-0/9999-9998\n wales 3 pitch 3\n courses 4 pitch 5\nend\n")
+        wide.write_text(
+            "fabric 1\nthread a\n diameter 0.4\nend\n"
+            "warpknit\n bar a 1-0/9999-9998\n wales 3 pitch 3\n courses 4 pitch 5\nend\n"
+        )
         message = self.fails(1, "check", wide, "--memory", "2000")
         self.assertRegex(message, f"(?m)^{wide}: error: .*needs more memory than the 2000 MB .*--memory")
 
@@ -145,7 +158,9 @@ class Speech(Case):
             inputs.append(self.folder / f"f{i}.txt")
             shutil.copy(RING if i % 2 else GRID, inputs[-1])
         done = self.succeeds("info", *inputs, "-j", 8)
-        self.assertEqual([line for line in done.stdout.splitlines() if line.startswith("/")], [str(path) for path in inputs])
+        self.assertEqual(
+            [line for line in done.stdout.splitlines() if line.startswith("/")], [str(path) for path in inputs]
+        )
 
     def test_quiet(self):
         self.assertEqual(self.succeeds("convert", GRID, "-o", self.folder / "x.igs", "--quiet").stderr, "")

@@ -41,10 +41,12 @@ class CheckCad(Case):
         step, iges = self.written("good.stp").read_text(), self.written("good.igs").read_text()
         first = re.search(r"(?m)^#\d+ = CARTESIAN_POINT.*;$", step)[0]
         number = re.search(r"(-?\d+\.\d*)[,)]", first)[1]
-        for name, text in (("schema.stp", re.sub(r"FILE_SCHEMA\(\(\s*'[^']*'", "FILE_SCHEMA(('NOBODYS_SCHEMA'", step)),
-                           ("twice.stp", step.replace(first, f"{first}\n{first}", 1)),
-                           ("exponent.stp", step.replace(first, first.replace(number, f"{number}e0", 1), 1)),
-                           ("trailing.igs", iges + "more\n")):
+        for name, text in (
+            ("schema.stp", re.sub(r"FILE_SCHEMA\(\(\s*'[^']*'", "FILE_SCHEMA(('NOBODYS_SCHEMA'", step)),
+            ("twice.stp", step.replace(first, f"{first}\n{first}", 1)),
+            ("exponent.stp", step.replace(first, first.replace(number, f"{number}e0", 1), 1)),
+            ("trailing.igs", iges + "more\n"),
+        ):
             with self.subTest(name):
                 path = self.folder / name
                 path.write_text(text)
@@ -67,10 +69,11 @@ class CheckCad(Case):
         last = len(lines)
         body = self.line_of(good, "128,17,15")
         for line, column, text, message in (
-                (last, 10, "     99", r"counts 99 lines in the global section"),
-                (body, 79, "77", r"sequence number P\d+ follows"),
-                (body, 70, "999", r"points back to"),
-                (last, 1, "X", r"where the number of start lines is due")):
+            (last, 10, "     99", r"counts 99 lines in the global section"),
+            (body, 79, "77", r"sequence number P\d+ follows"),
+            (body, 70, "999", r"points back to"),
+            (last, 1, "X", r"where the number of start lines is due"),
+        ):
             with self.subTest(message):
                 done = run("check", self.broken(good, line, column, text))
                 self.assertIn(done.returncode, (1, 3), done.stderr)
@@ -104,8 +107,12 @@ class CheckCad(Case):
         lines = path.read_text().splitlines()
         end_face = [i for i, line in enumerate(lines) if line.startswith("128,") and line[72] == "P"][1]
         pointer = lines[end_face][64:72]
-        words = [(i, at, word) for i, line in enumerate(lines) if line[64:73] == pointer + "P"
-                 for at, word in self.words(line[:64])]
+        words = [
+            (i, at, word)
+            for i, line in enumerate(lines)
+            if line[64:73] == pointer + "P"
+            for at, word in self.words(line[:64])
+        ]
         counts = [int(word) for _, _, word in words[1:5]]
         first = 10 + sum(counts) + 4 + (counts[0] + 1) * (counts[1] + 1)
         line, at, word = max(words[first : first + 3], key=lambda w: abs(float(w[2])))
@@ -133,15 +140,20 @@ class CheckCad(Case):
         bad = self.moved_corner(good)
         done = run("check", bad, "--report", report)
         texts = [m["text"] for m in json.loads(report.read_text())["inputs"][0]["messages"]]
-        self.assertTrue(any("an edge" in text and ("apart" in text or "no other face" in text) for text in texts), texts)
+        self.assertTrue(
+            any("an edge" in text and ("apart" in text or "no other face" in text) for text in texts), texts
+        )
 
     def test_stated_measures(self):
         """A STEP file whose volume, area or centre is changed is defective; each is told by the product's name."""
         good = self.written("good.stp", source=RING)
         text = good.read_text("ascii")
         changed = good.with_name("changed.stp")
-        for pattern, what in ((r"(VOLUME_MEASURE\()([^)]*)(\))", "volume"), (r"(AREA_MEASURE\()([^)]*)(\))", "area"),
-                              (r"('centre point',\()([^,]*)(,)", "centre")):
+        for pattern, what in (
+            (r"(VOLUME_MEASURE\()([^)]*)(\))", "volume"),
+            (r"(AREA_MEASURE\()([^)]*)(\))", "area"),
+            (r"('centre point',\()([^,]*)(,)", "centre"),
+        ):
             with self.subTest(what):
                 found = re.search(pattern, text)
                 value = float(found.group(2))

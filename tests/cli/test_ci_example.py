@@ -43,10 +43,12 @@ class Example(Case):
         done = self.sh("./check.sh")
         self.assertEqual(done.returncode, 1)
         shown = re.search(r"```\n(cuff:\n.*?)```", (self.copy / "README.md").read_text(), re.DOTALL)[1]
+
         # Another machine may round another way: the words are compared, not the digits.
         def words(text):
             return re.sub(r"-?\d+\.\d+", "#", text)
-        self.assertEqual(words(done.stdout)[:len(words(shown))], words(shown))
+
+        self.assertEqual(words(done.stdout)[: len(words(shown))], words(shown))
 
     def test_the_workflow(self):
         workflow = (self.copy / "github" / "fabrics.yml").read_text()

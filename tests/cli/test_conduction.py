@@ -40,7 +40,8 @@ def published(kind, share, contrast):
 def text_of(yarns, box, section, inner, outer, periodic="x y z"):
     """Straight yarns along x, by their places across it, in a box from the origin."""
     rows = "".join(
-        f"yarn rod_{k} rod\n  path\n    -1 {y!r} {z!r}\n    {box[0] + 1!r} {y!r} {z!r}\n  end\nend\n" for k, (y, z) in enumerate(yarns)
+        f"yarn rod_{k} rod\n  path\n    -1 {y!r} {z!r}\n    {box[0] + 1!r} {y!r} {z!r}\n  end\nend\n"
+        for k, (y, z) in enumerate(yarns)
     )
     return (
         f"fabric 1\nunits mm\ntolerance 1e-5\nmaterial inner\n{inner}\nend\nmaterial outer\n{outer}\nend\n"
@@ -62,7 +63,10 @@ class Conduction(Case):
 
     def run_script(self, deck, *more):
         return subprocess.run(
-            [sys.executable, SCRIPTS / "homogenize.py", deck, "--json", "-", *more], text=True, capture_output=True, check=False
+            [sys.executable, SCRIPTS / "homogenize.py", deck, "--json", "-", *more],
+            text=True,
+            capture_output=True,
+            check=False,
         )
 
     def homogenized(self, deck, *more):
@@ -105,7 +109,11 @@ class Arrays(Conduction):
             result, tensor = self.homogenized(deck)
             inside = share_of_yarns(result)
             series = array_of_cylinders(kind, share, contrast)
-            off = [tensor[0, 0] / (1 + inside * (contrast - 1)) - 1, tensor[1, 1] / series - 1, tensor[2, 2] / series - 1]
+            off = [
+                tensor[0, 0] / (1 + inside * (contrast - 1)) - 1,
+                tensor[1, 1] / series - 1,
+                tensor[2, 2] / series - 1,
+            ]
             print(
                 f"{kind} {share} {contrast}: {tensor[1, 1]:.5f} {tensor[2, 2]:.5f}, series {series:.5f}: "
                 f"{100 * off[1]:+.3f} % {100 * off[2]:+.3f} %; share {inside:.5f}; {result['nodes']} nodes {result['seconds']:.1f} s"
@@ -129,7 +137,9 @@ class Arrays(Conduction):
 class Identities(Conduction):
     def laminate(self, inner, outer, *more):
         """A ply of half the height, of voxels: it fills the cell across."""
-        text = text_of([(0.5, 0.5)], (1.0, 1.0, 1.0), "polygon\n -2 -0.25\n 2 -0.25\n 2 0.25\n -2 0.25\n end", inner, outer)
+        text = text_of(
+            [(0.5, 0.5)], (1.0, 1.0, 1.0), "polygon\n -2 -0.25\n 2 -0.25\n 2 0.25\n -2 0.25\n end", inner, outer
+        )
         return self.homogenized(self.deck(text, "--voxel", "4"), *more)
 
     def test_laminate(self):
@@ -183,7 +193,11 @@ class Identities(Conduction):
     def test_physics_are_one(self):
         """Diffusion and permittivity of the same numbers give the same tensor, by their own words."""
         found = []
-        for word, prop in (("conduction", "conductivity"), ("diffusion", "diffusivity"), ("permittivity", "permittivity")):
+        for word, prop in (
+            ("conduction", "conductivity"),
+            ("diffusion", "diffusivity"),
+            ("permittivity", "permittivity"),
+        ):
             text = text_of([(0.5, 0.5)], (0.2, 1.0, 1.0), "circle 0.6", f" {prop} 7", f" {prop} 2 3")
             result, tensor = self.homogenized(self.deck(text, "--voxel", "8", physics=word))
             self.assertEqual((result["physics"], result["property"]), (word, prop))
@@ -195,7 +209,9 @@ class Identities(Conduction):
 class Samples(Conduction):
     def test_within_bounds(self):
         """Every cell of the samples that has a matrix, its yarns and that given conductivities of glass or carbon and a resin."""
-        for sample in (path for path in sorted(SAMPLES.glob("cell_*.txt")) if re.search(r"^\s*matrix", path.read_text(), re.M)):
+        for sample in (
+            path for path in sorted(SAMPLES.glob("cell_*.txt")) if re.search(r"^\s*matrix", path.read_text(), re.M)
+        ):
             for inner in ("1", "8 1.2"):
                 with self.subTest(sample=sample.stem, inner=inner):
                     text = sample.read_text()
@@ -235,9 +251,13 @@ class Refusals(Conduction):
         text = self.refused(cell(" diffusivity 1", " conductivity 1"), "--physics", "diffusion", *deck)
         self.assertIn("'outer' has no diffusivity", text)
         good = cell(" conductivity 2", " conductivity 1")
-        self.assertIn("no material", self.refused(good.replace("  material inner\n", ""), "--physics", "conduction", *deck))
+        self.assertIn(
+            "no material", self.refused(good.replace("  material inner\n", ""), "--physics", "conduction", *deck)
+        )
         self.assertIn("--to inp", self.refused(good, "--physics", "conduction", "-o", self.folder / "cell.bdf"))
-        self.assertIn("--yarn-stiffness", self.refused(good, "--physics", "conduction", "--yarn-stiffness", "chamis", *deck))
+        self.assertIn(
+            "--yarn-stiffness", self.refused(good, "--physics", "conduction", "--yarn-stiffness", "chamis", *deck)
+        )
 
     def test_tensor_outside_of_its_bounds(self):
         """A deck whose equations drive too hard: what comes of it is refused, not printed."""

@@ -17,7 +17,7 @@ class Progress(Case):
     def rods(self, count):
         paths = [self.folder / f"rod {i}.txt" for i in range(count)]
         for i, path in enumerate(paths):
-            path.write_text(ROD.format(title=f'rod {i}', height=0.1 * i))
+            path.write_text(ROD.format(title=f"rod {i}", height=0.1 * i))
         return paths
 
     def test_objects(self):
@@ -65,8 +65,13 @@ class Colors(Case):
         """Standard error of a run whose standard error is a terminal."""
         master, slave = terminal()
         env = {name: value for name, value in environment(TERM="xterm").items() if name != "NO_COLOR"}
-        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=slave, env={**env, **variables})
+        process = subprocess.Popen(
+            [PROGRAM, *map(str, arguments)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=slave,
+            env={**env, **variables},
+        )
         os.close(slave)
         text = b""
         try:
@@ -95,7 +100,9 @@ class Colors(Case):
 
     def test_warnings(self):
         text = self.folder / "warned.txt"
-        text.write_text(ROD.format(title="x", height=0).replace("  path chord", "  tangent start 1 0 0\n  closed\n  path chord"))
+        text.write_text(
+            ROD.format(title="x", height=0).replace("  path chord", "  tangent start 1 0 0\n  closed\n  path chord")
+        )
         shown = self.on_terminal("info", text)
         self.assertIn("\x1b[1;35mwarning:\x1b[0m", shown)
 

@@ -55,7 +55,10 @@ end
 
 def yarns(own):
     text = "fabric 1\nthread t\n  diameter 0.5\nend\n"
-    return text + "".join(f'yarn "{name}" t\n  path\n    0 {2 * i} 0\n    {1 + 0.25 * i} {2 * i} 0\n  end\nend\n' for i, name in enumerate(own))
+    return text + "".join(
+        f'yarn "{name}" t\n  path\n    0 {2 * i} 0\n    {1 + 0.25 * i} {2 * i} 0\n  end\nend\n'
+        for i, name in enumerate(own)
+    )
 
 
 def sets_of(path):
@@ -66,7 +69,9 @@ def sets_of(path):
         for line in lines:
             if match := re.match(r"\*(ELEMENT|NSET|ELSET|SURFACE|NODE),.*\b(ELSET|NSET|NAME)=([^,]+)", line):
                 current = match[3] if match[1] == "ELEMENT" else None
-                found.setdefault("ELSET" if match[1] == "ELEMENT" else "NSET" if match[1] == "NODE" else match[1], []).append(match[3])
+                found.setdefault(
+                    "ELSET" if match[1] == "ELEMENT" else "NSET" if match[1] == "NODE" else match[1], []
+                ).append(match[3])
             elif line.startswith("*"):
                 current = None
             elif current:
@@ -113,15 +118,20 @@ def solved(folder, name):
     done = subprocess.run(["ccx", name], cwd=folder, capture_output=True, text=True)
     words = done.stdout + done.stderr
     assert "Job finished" in words and "*ERROR" not in words and "*WARNING" not in words, words
-    return [[float(word) for word in line.split()] for line in (folder / f"{name}.dat").read_text().splitlines()
-            if re.fullmatch(r"[\s\dE.+-]+", line) and line.strip()]
+    return [
+        [float(word) for word in line.split()]
+        for line in (folder / f"{name}.dat").read_text().splitlines()
+        if re.fullmatch(r"[\s\dE.+-]+", line) and line.strip()
+    ]
 
 
 class Names(Case):
     def mesh(self, source, *options):
         """The decks of all formats, and how many elements each yarn has, by the report."""
         report = self.folder / "report.json"
-        self.succeeds("mesh", source, *options, "--to", "inp,cdb,k,bdf,unv", "-o", self.folder, "--report", report, "-q")
+        self.succeeds(
+            "mesh", source, *options, "--to", "inp,cdb,k,bdf,unv", "-o", self.folder, "--report", report, "-q"
+        )
         return [self.folder / f"{pathlib.Path(source).stem}.{kind}" for kind in ("inp", "cdb", "k", "bdf", "unv")]
 
     def test_awkward_names(self):
@@ -184,26 +194,40 @@ class Split(Case):
         return (self.folder / name for name in ("one.inp", "two.inp", "two_mesh.inp"))
 
     def keywords(self, deck):
-        return {line.strip()[1:].split(",")[0].upper() for line in deck.read_text().splitlines()
-                if line.strip().startswith("*") and not line.startswith("**")}
+        return {
+            line.strip()[1:].split(",")[0].upper()
+            for line in deck.read_text().splitlines()
+            if line.strip().startswith("*") and not line.startswith("**")
+        }
 
     def test_what_is_where(self):
-        for source, options in ((PATH, ("--size", "0.2")), (SAMPLES / "cell_plain.txt", ("--matrix", "--periodic", "--voxel", "8"))):
+        for source, options in (
+            (PATH, ("--size", "0.2")),
+            (SAMPLES / "cell_plain.txt", ("--matrix", "--periodic", "--voxel", "8")),
+        ):
             with self.subTest(source):
                 one, two, mesh = self.write(source, *options)
-                self.assertLessEqual(self.keywords(mesh), {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "DISTRIBUTION"})
+                self.assertLessEqual(
+                    self.keywords(mesh), {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "DISTRIBUTION"}
+                )
                 self.assertEqual(self.keywords(mesh) & self.keywords(two), set())
                 self.assertEqual(self.keywords(mesh) | self.keywords(two), self.keywords(one) | {"INCLUDE"})
                 self.assertIn("\n*INCLUDE, INPUT=two_mesh.inp\n", two.read_text())
                 # Put in where it is included it is the one deck, but for comments.
                 whole = two.read_text().replace("*INCLUDE, INPUT=two_mesh.inp\n", mesh.read_text())
-                cards = [[line for line in text.splitlines() if not line.startswith("**")] for text in (whole, one.read_text())]
+                cards = [
+                    [line for line in text.splitlines() if not line.startswith("**")]
+                    for text in (whole, one.read_text())
+                ]
                 self.assertEqual(*cards)
                 self.assertEqual(len(meshio.read(two).points), len(inp.read(one).nodes))
 
     @unittest.skipUnless(shutil.which("ccx"), "CalculiX is not installed")
     def test_calculix_has_the_same_results(self):
-        for source, options in ((PATH, ("--size", "0.2")), (SAMPLES / "cell_plain.txt", ("--matrix", "--periodic", "--voxel", "6"))):
+        for source, options in (
+            (PATH, ("--size", "0.2")),
+            (SAMPLES / "cell_plain.txt", ("--matrix", "--periodic", "--voxel", "6")),
+        ):
             with self.subTest(source):
                 self.write(source, *options)
                 first, second = solved(self.folder, "one"), solved(self.folder, "two")
@@ -219,8 +243,19 @@ class Split(Case):
         for name in ("one", "two"):
             for solver in ("direct", "iterative"):
                 result = self.folder / "result.json"
-                done = subprocess.run([sys.executable, ROOT / "scripts" / "homogenize.py", self.folder / f"{name}.inp", "--solver", solver,
-                                       "--json", result], capture_output=True, text=True)
+                done = subprocess.run(
+                    [
+                        sys.executable,
+                        ROOT / "scripts" / "homogenize.py",
+                        self.folder / f"{name}.inp",
+                        "--solver",
+                        solver,
+                        "--json",
+                        result,
+                    ],
+                    capture_output=True,
+                    text=True,
+                )
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found.append(json.loads(result.read_text())["stiffness"])
         self.assertEqual(found[0], found[2])
@@ -229,7 +264,18 @@ class Split(Case):
     def test_both_or_none(self):
         """They appear together, the report has both, and a run that goes on from it wants both."""
         report = self.folder / "report.json"
-        arguments = ("mesh", PATH, "--size", "0.3", "--split-deck", "-o", self.folder / "d.inp", "--report", report, "-q")
+        arguments = (
+            "mesh",
+            PATH,
+            "--size",
+            "0.3",
+            "--split-deck",
+            "-o",
+            self.folder / "d.inp",
+            "--report",
+            report,
+            "-q",
+        )
         self.succeeds(*arguments)
         entry = json.loads(report.read_text())["inputs"][0]
         self.assertEqual([pathlib.Path(output["path"]).name for output in entry["outputs"]], ["d.inp", "d_mesh.inp"])
@@ -256,7 +302,9 @@ class Split(Case):
         # The mesh of one would replace the deck of the other.
         for name in ("p.txt", "p_mesh.txt"):
             shutil.copy(PATH, self.folder / name)
-        message = self.fails(2, "mesh", self.folder / "p.txt", self.folder / "p_mesh.txt", "--split-deck", "-o", self.folder / "out/")
+        message = self.fails(
+            2, "mesh", self.folder / "p.txt", self.folder / "p_mesh.txt", "--split-deck", "-o", self.folder / "out/"
+        )
         self.assertIn("p_mesh.inp", message)
         self.succeeds("mesh", PATH, "--size", "0.3", "--to", "inp,vtu", "--split-deck", "-o", self.folder, "-q")
 
@@ -276,7 +324,18 @@ class Fractions(Case):
                 self.compare(*options)
 
     def compare(self, *options):
-        self.succeeds("mesh", self.folder / "cell.txt", "--matrix", "--periodic", *options, "--to", "msh,vtu", "-o", self.folder, "-q")
+        self.succeeds(
+            "mesh",
+            self.folder / "cell.txt",
+            "--matrix",
+            "--periodic",
+            *options,
+            "--to",
+            "msh,vtu",
+            "-o",
+            self.folder,
+            "-q",
+        )
         wanted = np.concatenate(meshio.read(self.folder / "cell.vtu").cell_data["fibre_fraction"])
         own = meshio.read(self.folder / "cell.msh")
         solid = [i for i, block in enumerate(own.cells) if block.type in ("tetra", "tetra10", "hexahedron")]
@@ -289,7 +348,7 @@ class Fractions(Case):
         try:
             gmsh.option.setNumber("General.Verbosity", 1)
             gmsh.open(str(self.folder / "cell.msh"))
-            tag, = gmsh.view.getTags()
+            (tag,) = gmsh.view.getTags()
             kind, elements, values, _, components = gmsh.view.getModelData(tag, 0)
             self.assertEqual((kind, components), ("ElementData", 1))
             share = dict(zip(elements, (value[0] for value in values)))
@@ -298,7 +357,6 @@ class Fractions(Case):
             self.assertEqual([share[e] for e in range(total - len(wanted) + 1, total + 1)], wanted.tolist())
         finally:
             gmsh.finalize()
-
 
 
 class ModifiedTetrahedra(Case):
@@ -314,12 +372,29 @@ class ModifiedTetrahedra(Case):
     def test_refusals(self):
         deck = self.folder / "deck.inp"
         asked = ("mesh", PATH, "--size", "0.3", "--tetrahedron", "C3D10M", "-o", deck)
-        self.assertIn("that Abaqus has and CalculiX has not", self.fails(2, *asked, "--order", "2", "--solver", "calculix"))
+        self.assertIn(
+            "that Abaqus has and CalculiX has not", self.fails(2, *asked, "--order", "2", "--solver", "calculix")
+        )
         self.assertIn("it goes with --order", self.fails(2, *asked))
-        self.assertIn("has ten nodes, and this mesh has four a tetrahedron: say --order 2", self.fails(1, *asked, "--order", "1"))
+        self.assertIn(
+            "has ten nodes, and this mesh has four a tetrahedron: say --order 2", self.fails(1, *asked, "--order", "1")
+        )
         self.assertFalse(deck.exists())
-        self.succeeds("mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--order", "2", "--tetrahedron", "C3D10M", "-o", deck)
-        done = subprocess.run([sys.executable, ROOT / "scripts" / "homogenize.py", deck], capture_output=True, text=True)
+        self.succeeds(
+            "mesh",
+            SAMPLES / "cell_fibre.txt",
+            "--matrix",
+            "--periodic",
+            "--order",
+            "2",
+            "--tetrahedron",
+            "C3D10M",
+            "-o",
+            deck,
+        )
+        done = subprocess.run(
+            [sys.executable, ROOT / "scripts" / "homogenize.py", deck], capture_output=True, text=True
+        )
         self.assertEqual(done.returncode, 1)
         self.assertIn("elements of type C3D10M, which this script does not know", done.stderr)
 

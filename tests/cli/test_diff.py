@@ -58,10 +58,13 @@ class Differences(Case):
         numbers = list(re.finditer(r"^\s+(\S+) (\S+) (\S+)$", text, re.MULTILINE))
         row = numbers[20]
         moved = f"{float(row[3]) + 1e-9!r}"
-        changed = self.text("changed.txt", text[:row.start(3)] + moved + text[row.end(3):])
+        changed = self.text("changed.txt", text[: row.start(3)] + moved + text[row.end(3) :])
         lines = self.lines(3, GRID, changed)
-        self.assertRegex(lines[0], r"^reshaped: yarn 'warp1', control point \(\d+, \d+\) of \d+ x \d+ of its body at "
-                                   r"\(.*\) by 1e-09 mm; \d of \d+ points differ$")
+        self.assertRegex(
+            lines[0],
+            r"^reshaped: yarn 'warp1', control point \(\d+, \d+\) of \d+ x \d+ of its body at "
+            r"\(.*\) by 1e-09 mm; \d of \d+ points differ$",
+        )
         self.assertRegex(lines[-1], r"^different: 1 reshaped; the other 3 equal \(tolerance 0 mm\)$")
         one = self.found(3, GRID, changed)["differences"][0]
         self.assertEqual((one["kind"], one["name"], one["surface"]), ("reshaped", "warp1", "body"))
@@ -99,15 +102,18 @@ class Differences(Case):
         body = pathlib.Path(GRID).read_text()
         self.assertEqual(body.count("\nunits mm\n"), 1)
         number = r"^(    )(-?[\d.]+) (-?[\d.]+) (-?[\d.]+)$"
-        scaled = re.sub(number, lambda m: m[1] + " ".join(repr(float(m[k]) * 1000) for k in (2, 3, 4)), body,
-                        flags=re.MULTILINE)
+        scaled = re.sub(
+            number, lambda m: m[1] + " ".join(repr(float(m[k]) * 1000) for k in (2, 3, 4)), body, flags=re.MULTILINE
+        )
         micrometres = self.text("um.txt", scaled.replace("\nunits mm\n", "\nunits um\n"))
         lines = self.lines(0, GRID, micrometres)
         self.assertIn("note: units: mm and um; compared in mm", lines)
 
     def test_swapped_names(self):
         text = pathlib.Path(PATH).read_text()
-        swapped = text.replace("yarn warp1", "yarn x").replace("yarn warp2", "yarn warp1").replace("yarn x", "yarn warp2")
+        swapped = (
+            text.replace("yarn warp1", "yarn x").replace("yarn warp2", "yarn warp1").replace("yarn x", "yarn warp2")
+        )
         lines = self.lines(3, PATH, self.text("swapped.txt", swapped))
         self.assertEqual(lines[0], "renamed: yarn 'warp1' to 'warp2': the two swapped their names")
         self.assertEqual(len(lines), 3)
@@ -121,7 +127,9 @@ class Differences(Case):
             self.assertLessEqual(one["at_least"], one.get("at_most", 1))
             self.assertGreater(one["at_least"], 0.005)  # the radii differ by 0.01
             self.assertLess(one["at_least"], 0.06)
-        self.assertRegex(self.lines(3, before, after)[-1], r"^different: 18 reshaped, all by about 0\.\d+( to 0\.\d+)? mm; ")
+        self.assertRegex(
+            self.lines(3, before, after)[-1], r"^different: 18 reshaped, all by about 0\.\d+( to 0\.\d+)? mm; "
+        )
 
     def test_junit(self):
         before = self.text("before.txt", WEAVE.format(extra="", color="1 2 3", warps=6))
@@ -165,7 +173,9 @@ class Differences(Case):
 
     def test_limits_and_interruption(self):
         large = self.text("large.txt", WEAVE.format(extra="", color="1 2 3", warps=6000))
-        self.assertIn("not done within its 0.2 s", self.fails(1, "diff", large, large, "--timeout", "0.2", "--no-progress"))
+        self.assertIn(
+            "not done within its 0.2 s", self.fails(1, "diff", large, large, "--timeout", "0.2", "--no-progress")
+        )
         running = start("diff", large, large, "--no-progress")
         time.sleep(0.3)
         running.send_signal(signal.SIGINT)

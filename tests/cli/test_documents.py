@@ -34,8 +34,11 @@ def saved_texts(document):
 
 def pages():
     """Every page for users, by its place."""
-    return sorted(str(path.relative_to(ROOT)) for folder in ("src/cli", "formats", "samples", "scripts")
-                  for path in (ROOT / folder).rglob("*.md")) + ["README.md"]
+    return sorted(
+        str(path.relative_to(ROOT))
+        for folder in ("src/cli", "formats", "samples", "scripts")
+        for path in (ROOT / folder).rglob("*.md")
+    ) + ["README.md"]
 
 
 class Documents(Case):
@@ -61,9 +64,14 @@ class Documents(Case):
             line = line.replace("./scripts/run", "selvage", 1)
             line = re.sub(r"^scripts/", f"{ROOT}/scripts/", line)
             with self.subTest(line):
-                self.assertRegex(line, f"^(selvage|selvage-homogenize|ccx|{ROOT}/scripts/homogenize) ", "no other commands are expected here")
-                done = subprocess.run(["sh", "-c", line], cwd=self.folder, env=environment(PATH=self.path),
-                                      capture_output=True, text=True)
+                self.assertRegex(
+                    line,
+                    f"^(selvage|selvage-homogenize|ccx|{ROOT}/scripts/homogenize) ",
+                    "no other commands are expected here",
+                )
+                done = subprocess.run(
+                    ["sh", "-c", line], cwd=self.folder, env=environment(PATH=self.path), capture_output=True, text=True
+                )
                 if is_page(line) and not HAS_PAGES:
                     self.assertIn("three.js", done.stderr)
                 else:
@@ -99,8 +107,13 @@ class Documents(Case):
             self.assertTrue(any(path.match(pattern) for pattern in patterns), path.name)
 
     def test_every_command_is_on_a_page_that_is_checked(self):
-        checked = {"README.md", "samples/README.md", "samples/ci/README.md", "scripts/packaging/README.md",  # by test_install.py
-                   *(str(page.relative_to(ROOT)) for page in (ROOT / "src/cli").glob("*.md"))}
+        checked = {
+            "README.md",
+            "samples/README.md",
+            "samples/ci/README.md",
+            "scripts/packaging/README.md",  # by test_install.py
+            *(str(page.relative_to(ROOT)) for page in (ROOT / "src/cli").glob("*.md")),
+        }
         for page in pages():
             if list(commands(page)):
                 self.assertIn(page, checked)

@@ -73,7 +73,7 @@ class Bytes(Editing):
         marked = b"\xef\xbb\xbf" + TEXT.encode()
         self.assertEqual(self.edited(marked, *MOVE), marked.replace(b"of a\n", f"of a\n{LINE}\n".encode()))
         for data, end in ((TEXT.encode(), b"\n"), (crlf, b"\r\n")):
-            cut = data[:data.index(b"title")].rstrip()
+            cut = data[: data.index(b"title")].rstrip()
             self.assertEqual(self.edited(cut, *MOVE), cut + end + LINE.encode())
         mixed = TEXT.replace("of a\n", "of a\r\n").encode()
         self.assertEqual(self.edited(mixed, *MOVE), mixed.replace(b"of a\r\n", f"of a\r\n{LINE}\r\n".encode()))
@@ -110,8 +110,21 @@ class Meaning(Editing):
 
     def test_by_weight(self):
         flat = TEXT.replace("1 0 0.2", "1 0 0.6").replace("5 0 0.2", "5 0 0.6")
-        message = self.refused(1, "nearest point that they reach is", "--yarn", "a", "--point", "3", "--to", "2,0.5,0.1",
-                               "--by", "weight", "-o", self.out, data=flat)
+        message = self.refused(
+            1,
+            "nearest point that they reach is",
+            "--yarn",
+            "a",
+            "--point",
+            "3",
+            "--to",
+            "2,0.5,0.1",
+            "--by",
+            "weight",
+            "-o",
+            self.out,
+            data=flat,
+        )
         self.assertIn("0.5 off the plane", message)
         nearest = re.search(r"they reach is \(([^)]*)\)", message)[1].replace(" ", "")
         self.edited(flat.encode(), "--yarn", "a", "--point", "3", "--to", nearest, "--by", "weight")
@@ -133,22 +146,63 @@ class Meaning(Editing):
         self.input.write_text(TEXT)
         done = self.succeeds("edit", self.input, "--yarn", "a", "--point", "4", "--to", "3,0,4", "-o", self.out)
         self.assertIn("folds over itself", done.stderr)
-        self.assertEqual(self.succeeds("edit", self.input, "--yarn", "a", "--point", "4", "--to", "3,0,4", "-o", self.out,
-                                       "--quiet").stderr, "")
+        self.assertEqual(
+            self.succeeds(
+                "edit", self.input, "--yarn", "a", "--point", "4", "--to", "3,0,4", "-o", self.out, "--quiet"
+            ).stderr,
+            "",
+        )
 
 
 class Refusals(Editing):
     def test_what_cannot_be(self):
         self.refused(1, r"no yarn 'aa' to edit", "--yarn", "aa", "--point", "4", "--to", "1,1,1", "-o", self.out)
-        self.refused(1, r"in\.txt:6:1: error: there is no joint 8: the centre line has 7", "--yarn", "a", "--point", "8",
-                     "--to", "1,1,1", "-o", self.out)
-        self.refused(1, r"joint 1: it is an end", "--yarn", "a", "--point", "1", "--to", "1,1,1", "--by", "weight", "-o", self.out)
-        self.refused(1, r"long at the shortest", "--yarn", "a", "--point", "4", "--length", "2", "--along", "0,0,1", "-o",
-                     self.out)
+        self.refused(
+            1,
+            r"in\.txt:6:1: error: there is no joint 8: the centre line has 7",
+            "--yarn",
+            "a",
+            "--point",
+            "8",
+            "--to",
+            "1,1,1",
+            "-o",
+            self.out,
+        )
+        self.refused(
+            1,
+            r"joint 1: it is an end",
+            "--yarn",
+            "a",
+            "--point",
+            "1",
+            "--to",
+            "1,1,1",
+            "--by",
+            "weight",
+            "-o",
+            self.out,
+        )
+        self.refused(
+            1,
+            r"long at the shortest",
+            "--yarn",
+            "a",
+            "--point",
+            "4",
+            "--length",
+            "2",
+            "--along",
+            "0,0,1",
+            "-o",
+            self.out,
+        )
         self.refused(1, r"straights and arcs", *MOVE, "-o", self.out, data=TEXT.replace("uniform", "polyline"))
         self.refused(1, r":4:3: error: .*diameter", *MOVE, "-o", self.out, data=TEXT.replace("diameter", "diametr"))
-        self.assertRegex(self.fails(1, "edit", GRID, "--yarn", "warp1", "--point", "2", "--to", "1,1,1", "-o", self.out),
-                         r"is a grid: it has no centre line")
+        self.assertRegex(
+            self.fails(1, "edit", GRID, "--yarn", "warp1", "--point", "2", "--to", "1,1,1", "-o", self.out),
+            r"is a grid: it has no centre line",
+        )
         self.assertFalse(self.out.exists())
 
     def test_an_output_that_is_a_folder(self):
@@ -170,17 +224,19 @@ class Refusals(Editing):
     def test_the_command_line(self):
         at = ("--yarn", "a", "--point", "4")
         for pattern, *arguments in (
-                (r"--output is required", *MOVE), ("name either --yarn NAME, or --piece NAME", "--point", "4", "--to", "1,1,1", "-o", self.out),
-                ("--point", "--yarn", "a", "--point", "0", "--to", "1,1,1", "-o", self.out),
-                ("--point", "--yarn", "a", "--point", "1.5", "--to", "1,1,1", "-o", self.out),
-                ("either --to", *at, "-o", self.out),
-                ("either --to", *MOVE, "--length", "3", "--along", "0,0,1", "-o", self.out),
-                ("go together", *at, "--length", "3", "-o", self.out),
-                ("go together", *at, "--along", "0,0,1", "-o", self.out),
-                ("--by", *MOVE, "--by", "force", "-o", self.out),
-                ("--by weight goes with --to", *at, "--length", "3", "--along", "0,0,1", "--by", "weight", "-o", self.out),
-                ("--length 0", *at, "--length", "0", "--along", "0,0,1", "-o", self.out),
-                ("no direction", *at, "--length", "3", "--along", "0,-0,0.0", "-o", self.out)):
+            (r"--output is required", *MOVE),
+            ("name either --yarn NAME, or --piece NAME", "--point", "4", "--to", "1,1,1", "-o", self.out),
+            ("--point", "--yarn", "a", "--point", "0", "--to", "1,1,1", "-o", self.out),
+            ("--point", "--yarn", "a", "--point", "1.5", "--to", "1,1,1", "-o", self.out),
+            ("either --to", *at, "-o", self.out),
+            ("either --to", *MOVE, "--length", "3", "--along", "0,0,1", "-o", self.out),
+            ("go together", *at, "--length", "3", "-o", self.out),
+            ("go together", *at, "--along", "0,0,1", "-o", self.out),
+            ("--by", *MOVE, "--by", "force", "-o", self.out),
+            ("--by weight goes with --to", *at, "--length", "3", "--along", "0,0,1", "--by", "weight", "-o", self.out),
+            ("--length 0", *at, "--length", "0", "--along", "0,0,1", "-o", self.out),
+            ("no direction", *at, "--length", "3", "--along", "0,-0,0.0", "-o", self.out),
+        ):
             self.assertRegex(self.refused(2, pattern, *arguments), "^selvage: error: ")
         for vector in ("1,1", "1,1,1,1", "1,1,x", "1,,1", "1,1,nan", "1,1,1e999", "1, 1,1", "1,1,+-1", "1,1,0x1"):
             self.refused(2, "three numbers", *at, f"--to={vector}", "-o", self.out)

@@ -78,13 +78,20 @@ class Explain(Case):
                     at = outer
                 path = self.folder / "text.txt"
                 begin = [] if lesson["word"] == "fabric" else ["fabric 1"]
-                path.write_text("\n".join([*begin, *lines, lesson["example"],
-                                           *["end"] * (len(lines) + lesson["opens_block"]), ""]))
+                path.write_text(
+                    "\n".join([*begin, *lines, lesson["example"], *["end"] * (len(lines) + lesson["opens_block"]), ""])
+                )
                 line = len(begin) + len(lines) + 1
                 # What the line lacks around it (a thread, rows) is another matter than how it is written.
-                bad = [m for m in run("info", path).stderr.splitlines()
-                       if re.search(rf"text.txt:{line}:\d+: error: (unknown (?!thread|material|yarn|outline|block|piece)|"
-                                    r".*(is|are) missing|.*is expected|.*nothing|.*has to be)", m)]
+                bad = [
+                    m
+                    for m in run("info", path).stderr.splitlines()
+                    if re.search(
+                        rf"text.txt:{line}:\d+: error: (unknown (?!thread|material|yarn|outline|block|piece)|"
+                        r".*(is|are) missing|.*is expected|.*nothing|.*has to be)",
+                        m,
+                    )
+                ]
                 with self.subTest(block=block, word=lesson["word"]):
                     self.assertEqual(bad, [])
 
@@ -100,8 +107,11 @@ class Explain(Case):
         for path in TXT.glob("*.cpp"):
             text = path.read_text()
             words += re.findall(r'(?:expect|is_word)\("([^"]+)"\)', text)
-            words += [w for w in re.findall(r'same_word\([^()]*(?:\([^()]*\))?[^()"]*, "([^"]+)"\)', text)
-                      if w not in ("nan", "inf", "infinity")]  # numbers that are none
+            words += [
+                w
+                for w in re.findall(r'same_word\([^()]*(?:\([^()]*\))?[^()"]*, "([^"]+)"\)', text)
+                if w not in ("nan", "inf", "infinity")
+            ]  # numbers that are none
             for line in re.findall(r"std::array<Word<\w+>, \d+> \w+\{\{(.*?)\}\};", text):
                 words += re.findall(r'\{"([^"]+)",', line)
         for word in ("levels", "slack", "ease", "isotropic", "left"):
@@ -128,7 +138,13 @@ class Explain(Case):
 
     def test_what_is_said(self):
         twist = self.explained("TWIST")
-        for part in ("twist TURNS Z | S [rotate]", "`thread`, `yarn`", "tpm tpi", "Example: twist 600 Z", "Right-handed"):
+        for part in (
+            "twist TURNS Z | S [rotate]",
+            "`thread`, `yarn`",
+            "tpm tpi",
+            "Example: twist 600 Z",
+            "Right-handed",
+        ):
             self.assertIn(part, twist)
         self.assertRegex(self.explained("units"), r"Default: +mm")
         self.assertIn("26/cm", self.explained("pitch") + self.explained("warp"))
@@ -176,7 +192,9 @@ class Help(Case):
             self.succeeds("new", kind, "-o", self.folder / f"{kind}.txt")
         count = 0
         for command in re.findall(r"(?m)^  ([a-z]+)  ", everything.split("Subcommands:")[1]):
-            for line in re.search(r"Examples:\n(.*)", self.succeeds(command, "--help").stdout, re.DOTALL)[1].splitlines():
+            for line in re.search(r"Examples:\n(.*)", self.succeeds(command, "--help").stdout, re.DOTALL)[
+                1
+            ].splitlines():
                 if line.strip():
                     self.assertTrue(line.strip().startswith(f"selvage {command}"), line)
                     with self.subTest(line):
@@ -191,9 +209,18 @@ class Help(Case):
     def test_topics(self):
         self.assertIn("  length ", self.succeeds("help", "units").stdout)
         self.assertIn("130", self.succeeds("help", "exit-codes").stdout)
-        for topic, part in (("weave", "binder THREAD every K"), ("knit", "gating rib"), ("cell", "periodic x | y | z"),
-                            ("tolerance", "B-spline surface"), ("sections", "racetrack"), ("overlap", "selvage relax"),
-                            ("inputs", "@LIST"), ("outputs", "-o"), ("language", "warpknit"), ("braid", "selvage new KIND")):
+        for topic, part in (
+            ("weave", "binder THREAD every K"),
+            ("knit", "gating rib"),
+            ("cell", "periodic x | y | z"),
+            ("tolerance", "B-spline surface"),
+            ("sections", "racetrack"),
+            ("overlap", "selvage relax"),
+            ("inputs", "@LIST"),
+            ("outputs", "-o"),
+            ("language", "warpknit"),
+            ("braid", "selvage new KIND"),
+        ):
             self.assertIn(part, self.succeeds("help", topic).stdout, topic)
         tolerance = self.succeeds("help", "tolerance").stdout
         self.assertEqual(tolerance.count("--tolerance X"), 2, "of the tubes, and of comparisons")

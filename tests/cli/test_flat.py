@@ -39,8 +39,11 @@ class Flat(Case):
                 break
             if INPUTS > 500:
                 now = time.monotonic()
-                print(f"{done:6} done, {samples[-1][1]:6} KiB, {samples[-1][2]:2} descriptors, {now - begin:6.1f} s, "
-                      f"{1000 * (now - last) / (done - told):.2f} ms a job", flush=True)
+                print(
+                    f"{done:6} done, {samples[-1][1]:6} KiB, {samples[-1][2]:2} descriptors, {now - begin:6.1f} s, "
+                    f"{1000 * (now - last) / (done - told):.2f} ms a job",
+                    flush=True,
+                )
                 last, told = now, done
         _, message = process.communicate()
         self.assertEqual(process.returncode, 0, message)

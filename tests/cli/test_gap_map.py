@@ -8,7 +8,7 @@ import numpy as np
 
 from program import Case, SAMPLES, files_below, run
 
-HEAD = 'fabric 1\nunits {}\nthread t\n  diameter 1\nend\nthread thin\n  diameter 0.4\nend\n'
+HEAD = "fabric 1\nunits {}\nthread t\n  diameter 1\nend\nthread thin\n  diameter 0.4\nend\n"
 
 
 def yarn(name, rows, thread="t"):
@@ -17,8 +17,11 @@ def yarn(name, rows, thread="t"):
 
 def crossing(height, units="mm", thread="t"):
     """A yarn along x and one along y above it; both are straight."""
-    return (HEAD.format(units) + yarn("a", [f"{x} 0 0" for x in (-3, -1, 0, 1, 3)]) +
-            yarn("b", [f"0 {y} {height}" for y in (-3, -1, 0, 1, 3)], thread))
+    return (
+        HEAD.format(units)
+        + yarn("a", [f"{x} 0 0" for x in (-3, -1, 0, 1, 3)])
+        + yarn("b", [f"0 {y} {height}" for y in (-3, -1, 0, 1, 3)], thread)
+    )
 
 
 class GapMap(Case):
@@ -138,7 +141,9 @@ class Near(GapMap):
             for have, want in zip(one["at"], place):
                 self.assertAlmostEqual(have, want, delta=0.002)
             self.assertEqual((len(one["site_a"]), len(one["site_b"])), (2, 2))
-        self.assertRegex(done.stdout, r"near contacts of\s+and\s+gap\s+x\s+y\s+z\n\s+a\s+b\s+0\.0[12]\d*\s.*\n\s+a\s+c\s")
+        self.assertRegex(
+            done.stdout, r"near contacts of\s+and\s+gap\s+x\s+y\s+z\n\s+a\s+b\s+0\.0[12]\d*\s.*\n\s+a\s+c\s"
+        )
         self.assertIn("sound:", done.stdout)
         self.assertEqual(done.stderr, "")
         fewer, _ = self.check(source, "--reach", "0.05")

@@ -70,10 +70,13 @@ class Generated(Case):
         script = self.folder / "complete-bash"
         if not script.exists():
             self.generated("complete-bash")
-        driver = (f"source {script}\nCOMP_WORDS=(\"$@\")\nCOMP_CWORD=$(($# - 1))\n_selvage\n"
-                  "((${#COMPREPLY[@]})) && printf '%s\\n' \"${COMPREPLY[@]}\"\ntrue\n")
-        done = subprocess.run(["bash", "--norc", "-c", driver, "bash", "selvage", *words], cwd=self.folder,
-                              capture_output=True, text=True)
+        driver = (
+            f'source {script}\nCOMP_WORDS=("$@")\nCOMP_CWORD=$(($# - 1))\n_selvage\n'
+            "((${#COMPREPLY[@]})) && printf '%s\\n' \"${COMPREPLY[@]}\"\ntrue\n"
+        )
+        done = subprocess.run(
+            ["bash", "--norc", "-c", driver, "bash", "selvage", *words], cwd=self.folder, capture_output=True, text=True
+        )
         self.assertEqual((done.returncode, done.stderr), (0, ""), words)
         return done.stdout.splitlines()
 
@@ -125,9 +128,14 @@ class Generated(Case):
         script = self.generated("complete-bash")
         os.symlink(PROGRAM, self.folder / "selvage")
         master, slave = terminal()
-        shell = subprocess.Popen(["bash", "--norc", "--noprofile", "-i"], stdin=slave, stdout=slave, stderr=slave,
-                                 env=environment(PATH=f"{self.folder}:{os.environ['PATH']}", TERM="dumb", PS1="> "),
-                                 start_new_session=True)
+        shell = subprocess.Popen(
+            ["bash", "--norc", "--noprofile", "-i"],
+            stdin=slave,
+            stdout=slave,
+            stderr=slave,
+            env=environment(PATH=f"{self.folder}:{os.environ['PATH']}", TERM="dumb", PS1="> "),
+            start_new_session=True,
+        )
         os.close(slave)
         self.addCleanup(os.close, master)
         self.addCleanup(shell.wait)
@@ -160,8 +168,11 @@ class Generated(Case):
 class Grammar(Case):
     def test_the_file_is_up_to_date(self):
         path = ROOT / "formats/txt/fabric.tmLanguage.json"
-        self.assertEqual(path.read_text(), self.succeeds("--generate", "textmate").stdout,
-                         "renew it: selvage --generate textmate > formats/txt/fabric.tmLanguage.json")
+        self.assertEqual(
+            path.read_text(),
+            self.succeeds("--generate", "textmate").stdout,
+            "renew it: selvage --generate textmate > formats/txt/fabric.tmLanguage.json",
+        )
 
     def scopes(self, patterns, line):
         """(text, scope) from left to right, as editors match: the pattern that begins first, of several the first one."""
@@ -185,7 +196,9 @@ class Grammar(Case):
         texts = [p.read_text() for p in (ROOT / "samples").glob("*.txt")]
         count = 0
         for text in texts:
-            self.assertRegex(next(line for line in text.splitlines() if line and not line.startswith("#")), grammar["firstLineMatch"])
+            self.assertRegex(
+                next(line for line in text.splitlines() if line and not line.startswith("#")), grammar["firstLineMatch"]
+            )
             rows, params = False, re.findall(r"(?m)^param\s+(\w+)", text)
             for line in text.splitlines():
                 word = re.match(r"\s*([A-Za-z][\w.-]*)", line)
@@ -204,13 +217,16 @@ class Grammar(Case):
     def test_what_stands_in_a_line(self):
         grammar = json.loads(self.succeeds("--generate", "textmate").stdout)
         patterns = [(p, re.compile(p["match"])) for p in grammar["patterns"]]
-        for line, text, scope in (('  warp cotton 8 24/cm  # so many', "24/cm", "constant.numeric"),
-                                  ('  warp cotton 8 24/cm  # so many', "# so many", "comment"),
-                                  ('title "A # in it"', '"A # in it"', "string"),
-                                  ("  color #1E90FF", "#1E90FF", "constant.other.color"),
-                                  ("Thread tow", "tow", "entity.name"), ("  draft TWILL 2/2", "TWILL", "constant.language"),
-                                  ("    0 -.5e-3 30deg", "-.5e-3", "constant.numeric"),
-                                  ("    0 -.5e-3 30deg", "30deg", "constant.numeric")):
+        for line, text, scope in (
+            ("  warp cotton 8 24/cm  # so many", "24/cm", "constant.numeric"),
+            ("  warp cotton 8 24/cm  # so many", "# so many", "comment"),
+            ('title "A # in it"', '"A # in it"', "string"),
+            ("  color #1E90FF", "#1E90FF", "constant.other.color"),
+            ("Thread tow", "tow", "entity.name"),
+            ("  draft TWILL 2/2", "TWILL", "constant.language"),
+            ("    0 -.5e-3 30deg", "-.5e-3", "constant.numeric"),
+            ("    0 -.5e-3 30deg", "30deg", "constant.numeric"),
+        ):
             with self.subTest(text):
                 found = [s for t, s in self.scopes(patterns, line) if t == text]
                 self.assertTrue(found and found[0].startswith(scope), self.scopes(patterns, line))

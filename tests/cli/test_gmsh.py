@@ -24,8 +24,9 @@ def tetrahedra_by_volume(path):
     found = {}
     for entity, (a, b, c, d) in gmsh_mesh.elements(path, gmsh_mesh.TETRAHEDRON):
         u, v, w = ([q[k] - a[k] for k in range(3)] for q in (b, c, d))
-        six = (u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0])
-               + u[2] * (v[0] * w[1] - v[1] * w[0]))
+        six = (
+            u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0])
+        )
         count, volume = found.get(entity, (0, 0.0))
         found[entity] = (count + 1, volume + six / 6)
     return found
@@ -39,10 +40,12 @@ class Gmsh(Case):
 
     def names_of_volumes(self, file):
         """As gmsh shows them: what OpenCASCADE's documents (FreeCAD's, too) call the solids of the file."""
-        program = ("import gmsh, sys\ngmsh.initialize()\ngmsh.option.setNumber('General.Terminal', 0)\n"
-                   "gmsh.option.setNumber('Geometry.OCCImportLabels', 1)\n"
-                   "for tag in gmsh.model.occ.importShapes(sys.argv[1]):\n"
-                   "    gmsh.model.occ.synchronize()\n    print('NAME', gmsh.model.getEntityName(*tag))\n")
+        program = (
+            "import gmsh, sys\ngmsh.initialize()\ngmsh.option.setNumber('General.Terminal', 0)\n"
+            "gmsh.option.setNumber('Geometry.OCCImportLabels', 1)\n"
+            "for tag in gmsh.model.occ.importShapes(sys.argv[1]):\n"
+            "    gmsh.model.occ.synchronize()\n    print('NAME', gmsh.model.getEntityName(*tag))\n"
+        )
         run = subprocess.run(["/usr/bin/python3", "-c", program, file], capture_output=True, text=True, timeout=600)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return [line[5:].rsplit("/", 1)[-1] for line in run.stdout.splitlines() if line.startswith("NAME ")]
@@ -51,20 +54,24 @@ class Gmsh(Case):
         for to, options in (("iges", ["--iges-solid"]), ("step", [])):
             file = self.folder / f"named.{to}"
             self.succeeds("convert", GRID, "--to", to, *options, "-o", file)
-            names = [yarn["name"] for yarn in json.loads(self.succeeds("info", "--json", GRID).stdout)["inputs"][0]["yarns"]]
+            names = [
+                yarn["name"] for yarn in json.loads(self.succeeds("info", "--json", GRID).stdout)["inputs"][0]["yarns"]
+            ]
             self.assertGreater(len(names), 1)
             self.assertEqual(self.names_of_volumes(file), names, to)
 
     def script(self, file, how):
         """A gmsh script that reads the file. how: "solid" as it is; "sew"; "loop": gmsh's sewing makes no shell, so no
-        solid, of one single face, not even of one that is closed: it is told that the ring's surface bounds a volume."""
+        solid, of one single face, not even of one that is closed: it is told that the ring's surface bounds a volume.
+        """
         path = self.folder / "fabric.geo"
         path.write_text(
             'SetFactory("OpenCASCADE");\n'
             + ("Geometry.OCCSewFaces = 1;\nGeometry.OCCMakeSolids = 1;\n" if how == "sew" else "")
             + f'v() = ShapeFromFile("{file.name}");\n'
             + ("Surface Loop(1) = {1};\nVolume(1) = {1};\n" if how == "loop" else "")
-            + 'w() = Volume{:};\nFor i In {0:#w()-1}\nm() = Mass Volume{w(i)};\nPrintf("mass %.16g", m(0));\nEndFor\n')
+            + 'w() = Volume{:};\nFor i In {0:#w()-1}\nm() = Mass Volume{w(i)};\nPrintf("mass %.16g", m(0));\nEndFor\n'
+        )
         return path
 
     def cad_volumes(self, file, how):
@@ -87,19 +94,38 @@ class Gmsh(Case):
         errors = []
         for size in sizes:
             mesh = self.folder / "fabric.msh"
-            self.gmsh("fabric.geo" if how == "loop" else file.name, "-3", *(SEW if how == "sew" else []), "-format", "msh2", "-save_all", "-clmax", size,
-                      "-clmin", size, "-o", mesh.name)
+            self.gmsh(
+                "fabric.geo" if how == "loop" else file.name,
+                "-3",
+                *(SEW if how == "sew" else []),
+                "-format",
+                "msh2",
+                "-save_all",
+                "-clmax",
+                size,
+                "-clmin",
+                size,
+                "-o",
+                mesh.name,
+            )
             filled = tetrahedra_by_volume(mesh)
             self.assertEqual(len(filled), len(ours), f"{file.name} at {size}: {filled}")
             for count, _ in filled.values():
                 self.assertGreater(count, 0)
             errors.append(abs(sum(v for _, v in filled.values()) / sum(ours) - 1))
         order = math.log(errors[0] / errors[-1]) / math.log(sizes[0] / sizes[-1])
-        print(f"{os.path.basename(str(sample))} {suffix} {' '.join(options)}: relative volume errors {errors}, order {order:.2f}", flush=True)
+        print(
+            f"{os.path.basename(str(sample))} {suffix} {' '.join(options)}: relative volume errors {errors}, order {order:.2f}",
+            flush=True,
+        )
         self.assertGreaterEqual(order, 1.8, errors)
 
     def every_form(self, sample, sizes, surfaces="sew"):
-        for suffix, options, how in ((".igs", (), surfaces), (".igs", ("--iges-solid",), "solid"), (".stp", (), "solid")):
+        for suffix, options, how in (
+            (".igs", (), surfaces),
+            (".igs", ("--iges-solid",), "solid"),
+            (".stp", (), "solid"),
+        ):
             with self.subTest(suffix=suffix, options=options):
                 self.judge(sample, suffix, sizes, *options, how=how)
 

@@ -33,36 +33,69 @@ def path(thread, rows=" 0 0 0\n 1 0 0\n", more=""):
 
 # The text, and the message's place and words.
 REFUSED = {
-    "density_in_kg": (path("  tex 15\n  density 1520\n  packing 0.5\n"),
-                      r":4:11: error: a density of 1520 g/cm3 is far outside .* 25 g/cm3: if these are kg/m3, write 1\.52"),
+    "density_in_kg": (
+        path("  tex 15\n  density 1520\n  packing 0.5\n"),
+        r":4:11: error: a density of 1520 g/cm3 is far outside .* 25 g/cm3: if these are kg/m3, write 1\.52",
+    ),
     "twist": (path("  diameter 0.4\n  twist 1e9 Z rotate\n"), r":4:9: error: a twist of 1e\+09 turns per metre"),
     "tex": (path("  tex 3e10\n  density 1.5\n  packing 0.5\n"), r":3:7: error: a linear density of 3e\+10 g/km"),
     "ne": (path("  Ne 1e-9\n  density 1.5\n  packing 0.5\n"), r":3:6: error: a linear density of .* g/km"),
-    "modulus_in_pa": ("fabric 1\nmaterial m\n elastic isotropic 72e9 0.2\nend\n" + THREAD[9:] + "yarn x a\n path\n 0 0 0\n 1 0 0\n end\nend\n",
-                      r":3:20: error: a modulus of 7\.2e\+10 MPa .*: if these are Pa, write 72000"),
+    "modulus_in_pa": (
+        "fabric 1\nmaterial m\n elastic isotropic 72e9 0.2\nend\n"
+        + THREAD[9:]
+        + "yarn x a\n path\n 0 0 0\n 1 0 0\n end\nend\n",
+        r":3:20: error: a modulus of 7\.2e\+10 MPa .*: if these are Pa, write 72000",
+    ),
     "nanometres": (path("  diameter 1e-6\n"), r":2:1: error: a section's size of 1e-06 mm"),
     "light_years": (path("  diameter 0.4\n", " 0 0 0\n 1e300 0 0\n"), r":8:2: error: a coordinate of 1e\+300 mm"),
-    "fine_tolerance": ("fabric 1\ntolerance 1e-300\n" + path("  diameter 0.4\n")[9:], r":1:1: error: a tolerance of 1e-300 mm"),
+    "fine_tolerance": (
+        "fabric 1\ntolerance 1e-300\n" + path("  diameter 0.4\n")[9:],
+        r":1:1: error: a tolerance of 1e-300 mm",
+    ),
     "weave_pitch": (weave("2 pitch 9.2e18"), r":6:2: error: a pitch of 9\.2e\+18 mm is out of all proportion"),
     "weave_tiny_pitch": (weave("2 pitch 1e-300"), r":6:2: error: a pitch of 1e-300 mm is out of all proportion"),
     "weave_count": (weave("2147483647 pitch 2"), r":5:1: error: this would be .* yarns through .* data points"),
-    "weave_layers": (weave(rest=" profile straight\n layers 100000000\n binder a every 1 levels 3 0\n"),
-                     r":5:1: error: 100000000 layers are more than the 100000"),
-    "weave_cell": (weave(more="cell 0 0 -1 1e300 4 1\n periodic x y\nend\n"), r":10:1: error: a coordinate of 1e\+300 mm"),
+    "weave_layers": (
+        weave(rest=" profile straight\n layers 100000000\n binder a every 1 levels 3 0\n"),
+        r":5:1: error: 100000000 layers are more than the 100000",
+    ),
+    "weave_cell": (
+        weave(more="cell 0 0 -1 1e300 4 1\n periodic x y\nend\n"),
+        r":10:1: error: a coordinate of 1e\+300 mm",
+    ),
     "twill": (weave(rest=" draft twill 2147483647/2147483647\n"), r":8:2: error: a draft of 4294967294 x 4294967294"),
-    "knit_rib": (THREAD + "knit rib 2147483647x2147483647\n thread a\n courses 2\n wales 2\nend\n",
-                 r":5:1: error: a rib 2147483647x2147483647 begins anew after 4294967294 wales"),
-    "knit_wales": (THREAD + "knit jersey\n thread a\n courses 2147483647\n wales 2147483647\nend\n" + CELL,
-                   r":5:1: error: this would be .* data points"),
-    "braid_length": (THREAD + "braid\n thread a\n carriers 4\n pattern 1/1\n radius 2\n angle 40\n length 1e5\nend\n",
-                     r":5:1: error: one of its yarns would have .* data points"),
-    "braid_radius": (THREAD + "braid\n thread a\n carriers 4\n pattern 1/1\n radius 1e300\n angle 40\n length 10\nend\n",
-                     r":9:9: error: a radius of 1e\+300 mm is out of all proportion"),
-    "plies": (path("  diameter 0.5\n  plies 3000 100 Z\n  filaments 3000\n"),
-              r":7:1: error: this would be 9000000 yarns .*`--detail yarn`"),
-    "draft_device": (weave(rest=" draft file /dev/zero\n"), r":8:2: error: no draft in the file '/dev/zero': .*--allow-outside"),
-    "draft_outside": (weave(rest=" draft file ../../outside.wif\n"), r":8:2: error: no draft in the file '\.\./\.\./outside\.wif'"),
-    "draft_geometry": (weave(rest=" draft file yarns.igs\n"), r":8:2: error: no draft in the file 'yarns.igs': it is iges"),
+    "knit_rib": (
+        THREAD + "knit rib 2147483647x2147483647\n thread a\n courses 2\n wales 2\nend\n",
+        r":5:1: error: a rib 2147483647x2147483647 begins anew after 4294967294 wales",
+    ),
+    "knit_wales": (
+        THREAD + "knit jersey\n thread a\n courses 2147483647\n wales 2147483647\nend\n" + CELL,
+        r":5:1: error: this would be .* data points",
+    ),
+    "braid_length": (
+        THREAD + "braid\n thread a\n carriers 4\n pattern 1/1\n radius 2\n angle 40\n length 1e5\nend\n",
+        r":5:1: error: one of its yarns would have .* data points",
+    ),
+    "braid_radius": (
+        THREAD + "braid\n thread a\n carriers 4\n pattern 1/1\n radius 1e300\n angle 40\n length 10\nend\n",
+        r":9:9: error: a radius of 1e\+300 mm is out of all proportion",
+    ),
+    "plies": (
+        path("  diameter 0.5\n  plies 3000 100 Z\n  filaments 3000\n"),
+        r":7:1: error: this would be 9000000 yarns .*`--detail yarn`",
+    ),
+    "draft_device": (
+        weave(rest=" draft file /dev/zero\n"),
+        r":8:2: error: no draft in the file '/dev/zero': .*--allow-outside",
+    ),
+    "draft_outside": (
+        weave(rest=" draft file ../../outside.wif\n"),
+        r":8:2: error: no draft in the file '\.\./\.\./outside\.wif'",
+    ),
+    "draft_geometry": (
+        weave(rest=" draft file yarns.igs\n"),
+        r":8:2: error: no draft in the file 'yarns.igs': it is iges",
+    ),
 }
 # What can be read, and has to be.
 READ = {
@@ -97,11 +130,20 @@ def within_bounds(command, arguments):
     """The run, with the processor time that it took as `seconds`."""
     before = processor_time()
     if command == "edit":
+
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (MEGABYTES << 20, MEGABYTES << 20))
             resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
-        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, errors="replace", env=environment(),
-                              stdin=subprocess.DEVNULL, preexec_fn=limit)
+
+        done = subprocess.run(
+            [PROGRAM, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            preexec_fn=limit,
+        )
     else:
         done = run(*arguments, "--memory", MEGABYTES, "--timeout", TIMEOUT)
     done.seconds = processor_time() - before
@@ -116,7 +158,7 @@ def swapped(text, entity, old, new):
         for reference in re.finditer(r"#\d+", match.group(1)):
             if kinds.get(reference.group()) == old:
                 at = match.start(1) + reference.start()
-                return text[:at] + other + text[at + len(reference.group()):]
+                return text[:at] + other + text[at + len(reference.group()) :]
     raise AssertionError(f"no {entity} refers to a {old}")
 
 
@@ -126,11 +168,13 @@ def exponential(text, levels=40):
     product_context = re.search(r"(?m)^(#\d+) = PRODUCT_CONTEXT", text).group(1)
     rows, number = [], 1000000
     for level in range(levels):
-        rows += [f"#{number} = PRODUCT('l{level}','l{level}','',({product_context}));",
-                 f"#{number + 1} = PRODUCT_DEFINITION_FORMATION('','',#{number});",
-                 f"#{number + 2} = PRODUCT_DEFINITION('design','',#{number + 1},{context});",
-                 f"#{number + 3} = NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','a','',#{number + 2},{top},$);",
-                 f"#{number + 4} = NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','b','',#{number + 2},{top},$);"]
+        rows += [
+            f"#{number} = PRODUCT('l{level}','l{level}','',({product_context}));",
+            f"#{number + 1} = PRODUCT_DEFINITION_FORMATION('','',#{number});",
+            f"#{number + 2} = PRODUCT_DEFINITION('design','',#{number + 1},{context});",
+            f"#{number + 3} = NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','a','',#{number + 2},{top},$);",
+            f"#{number + 4} = NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','b','',#{number + 2},{top},$);",
+        ]
         top, number = f"#{number + 2}", number + 5
     end = text.rindex("ENDSEC;")
     return text[:end] + "\n".join(rows) + "\n" + text[end:]
@@ -143,7 +187,9 @@ def heavy(text):
     values = lines[first].split(",")
     values[7] = "0"  # PROP3
     lines[first] = ",".join(values)
-    weights = [k for k, line in enumerate(lines) if line[:64].rstrip() == "1.," * 21 and line[64:72] == lines[first][64:72]]
+    weights = [
+        k for k, line in enumerate(lines) if line[:64].rstrip() == "1.," * 21 and line[64:72] == lines[first][64:72]
+    ]
     middle = weights[len(weights) // 2]
     lines[middle] = "1.,1.,1E9," + "1.," * 18 + lines[middle][64:]
     return "\n".join(lines)
@@ -151,8 +197,14 @@ def heavy(text):
 
 def crossing(count):
     """Straight yarns in one plane, each through all of the other direction."""
-    rows = [f"yarn {d}{k} a\n path polyline\n {start}\n {end}\n end\nend\n" for k in range(count)
-            for d, start, end in (("x", f"0 {k + 1} 0", f"{count + 1} {k + 1} 0"), ("y", f"{k + 1} 0 0", f"{k + 1} {count + 1} 0"))]
+    rows = [
+        f"yarn {d}{k} a\n path polyline\n {start}\n {end}\n end\nend\n"
+        for k in range(count)
+        for d, start, end in (
+            ("x", f"0 {k + 1} 0", f"{count + 1} {k + 1} 0"),
+            ("y", f"{k + 1} 0 0", f"{k + 1} {count + 1} 0"),
+        )
+    ]
     return THREAD + "".join(rows)
 
 
@@ -189,10 +241,13 @@ class Hostile(Case):
         step, iges = ((self.folder / name).read_text() for name in ("base.stp", "base.igs"))
         (self.folder / "crossing.txt").write_text(crossing(4))
         self.succeeds("convert", self.folder / "crossing.txt", "-o", self.folder / "crossing.igs", "--quiet")
-        for name, text in (("edge_without_vertex.stp", swapped(step, "EDGE_CURVE", "VERTEX_POINT", "CARTESIAN_POINT")),
-                           ("loop_of_points.stp", swapped(step, "EDGE_LOOP", "ORIENTED_EDGE", "VERTEX_POINT")),
-                           ("face_on_its_shell.stp", swapped(step, "ADVANCED_FACE", "B_SPLINE_SURFACE_WITH_KNOTS", "CLOSED_SHELL")),
-                           ("exponential.stp", exponential(step)), ("heavy.igs", heavy(iges))):
+        for name, text in (
+            ("edge_without_vertex.stp", swapped(step, "EDGE_CURVE", "VERTEX_POINT", "CARTESIAN_POINT")),
+            ("loop_of_points.stp", swapped(step, "EDGE_LOOP", "ORIENTED_EDGE", "VERTEX_POINT")),
+            ("face_on_its_shell.stp", swapped(step, "ADVANCED_FACE", "B_SPLINE_SURFACE_WITH_KNOTS", "CLOSED_SHELL")),
+            ("exponential.stp", exponential(step)),
+            ("heavy.igs", heavy(iges)),
+        ):
             (self.folder / name).write_text(text)
 
     def test_models(self):
@@ -263,8 +318,11 @@ class Hostile(Case):
         print(f"with the inputs of {OUTSIDE}", file=sys.stderr)
         readable = {"bs.txt", "slow_check.igs", "heavy_weight.igs"}
         for source in sorted(OUTSIDE.iterdir()):
-            for command, arguments in (("info", ("info", source)), ("check", ("check", source)),
-                                       ("convert", ("convert", source, "--to", "iges", "-o", str(self.folder / "out") + "/"))):
+            for command, arguments in (
+                ("info", ("info", source)),
+                ("check", ("check", source)),
+                ("convert", ("convert", source, "--to", "iges", "-o", str(self.folder / "out") + "/")),
+            ):
                 with self.subTest(source.name, command=command):
                     done = within_bounds(command, arguments)
                     self.assertNotRegex(done.stderr, "was stopped|crash|more memory")

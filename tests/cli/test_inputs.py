@@ -21,8 +21,10 @@ class Kinds(Case):
         direct = self.succeeds("convert", GRID, "--to", "iges", "-o", "-").stdout
         piped = self.succeeds("convert", "-", "--to", "iges", "-o", "-", input=text).stdout
         # All but the names in the global section are the same.
-        self.assertEqual([line for line in direct.splitlines() if line[72] in "DP"],
-                         [line for line in piped.splitlines() if line[72] in "DP"])
+        self.assertEqual(
+            [line for line in direct.splitlines() if line[72] in "DP"],
+            [line for line in piped.splitlines() if line[72] in "DP"],
+        )
         self.assertIn("name one with -o", self.fails(2, "convert", "-", input=text))
         self.assertIn("only once", self.fails(2, "convert", "-", "-", "-o", self.out, input=text))
 
@@ -36,8 +38,11 @@ class Kinds(Case):
 
     def test_lines_of_a_list_that_are_no_paths(self):
         listing = self.folder / "list.txt"
-        for content, place, words in ((f"{GRID}\r\n{GRID}\0x\r\n", 2, "this line has a zero byte"), (f"\n\n@{GRID}\n", 3, "a list cannot name another list"),
-                                      (f"{GRID}\n{'a/' * 3000}b\n", 2, "this line has 6001 bytes, and a path less than 4096")):
+        for content, place, words in (
+            (f"{GRID}\r\n{GRID}\0x\r\n", 2, "this line has a zero byte"),
+            (f"\n\n@{GRID}\n", 3, "a list cannot name another list"),
+            (f"{GRID}\n{'a/' * 3000}b\n", 2, "this line has 6001 bytes, and a path less than 4096"),
+        ):
             listing.write_text(content, newline="")
             message = self.fails(2, "convert", f"@{listing}", "-o", self.out)
             self.assertIn(f"{listing}:{place}:1: error: {words}", message)
@@ -93,20 +98,38 @@ class Links(Case):
         shutil.copy(RING, self.outside / "other.txt")
         shutil.copy(RING, self.outside / "deep" / "one.txt")
         (self.outside / "words.txt").write_text("secret words\n")
-        for name, target in (("within.txt", "own.txt"), ("sub/up.txt", "../own.txt"), ("out.txt", "../outside/other.txt"), ("words.txt", self.outside / "words.txt"),
-                             ("folder", "../outside"), ("loop", "."), ("sub/loop", ".."), ("sub/above", "../.."), ("twice", "../outside/deep"),
-                             ("circle.txt", "circle.txt"), ("nowhere.txt", "gone.txt"), ("kernel.txt", "/proc/kmsg"), ("shadow.txt", "/etc/shadow")):
+        for name, target in (
+            ("within.txt", "own.txt"),
+            ("sub/up.txt", "../own.txt"),
+            ("out.txt", "../outside/other.txt"),
+            ("words.txt", self.outside / "words.txt"),
+            ("folder", "../outside"),
+            ("loop", "."),
+            ("sub/loop", ".."),
+            ("sub/above", "../.."),
+            ("twice", "../outside/deep"),
+            ("circle.txt", "circle.txt"),
+            ("nowhere.txt", "gone.txt"),
+            ("kernel.txt", "/proc/kmsg"),
+            ("shadow.txt", "/etc/shadow"),
+        ):
             (self.inside / name).symlink_to(target)
 
     def test_links_are_passed_by(self):
         messages = self.succeeds("convert", self.inside, "--to", "iges", "-o", f"{self.out}/").stderr
         self.assertEqual(sorted(files_below(self.out)), ["own.igs", "sub/up.igs", "within.igs"])
         for name in ("out.txt", "words.txt", "folder", "kernel.txt", "shadow.txt", "sub/above", "twice"):
-            self.assertIn(f"{self.inside}/{name}: note: passed by: this symbolic link leads out of the folder; --allow-outside follows it\n", messages)
+            self.assertIn(
+                f"{self.inside}/{name}: note: passed by: this symbolic link leads out of the folder; --allow-outside follows it\n",
+                messages,
+            )
         for name in ("circle.txt", "nowhere.txt"):
             self.assertRegex(messages, f"{self.inside}/{name}: note: passed by: this symbolic link leads nowhere ")
         for name in ("loop", "sub/loop"):
-            self.assertIn(f"{self.inside}/{name}: note: passed by: this symbolic link leads to a folder that is searched where it is\n", messages)
+            self.assertIn(
+                f"{self.inside}/{name}: note: passed by: this symbolic link leads to a folder that is searched where it is\n",
+                messages,
+            )
         self.assertNotIn("secret", messages)
         self.assertEqual(messages.count("note"), 11)
         quiet = self.succeeds("convert", self.inside, "--to", "iges", "-o", f"{self.out}/", "--quiet").stderr
@@ -149,17 +172,28 @@ class Bad(Case):
         self.assertEqual(sorted(files_below(self.out)), ["plain4_grid.igs"])
 
     def test_places_in_bad_samples(self):
-        places = {"decimal_comma": r":5:12: error: .*comma", "misspelt": r":3:3: error: .*diameter", "nan": r":3:12: error: ",
-                  "unknown_thread": r":2:8: error: .*nothread", "version": r":1:8: error: ", "no_end": r":\d+:\d+: error: .*end",
-                  "short_grid": r":\d+:\d+: error: ", "zero_length": r":\d+:\d+: error: ", "binary": r":1:1: error: ",
-                  "edit_joint": r":10:1: error: .*no joint 4", "edit_weight": r":12:1: error: .*off the plane",
-                  "piece_gap": r":5:3: error: line 'side' starts at", "piece_open": r":6:3: error: .*not closed",
-                  "piece_crossing": r":10:3: error: .*'a' and line 'c' meet at \(10, 10\)",
-                  "piece_flat": r":3:1: error: .*no area",
-                  "weave_pitch": r":7:3: error: the cloth is jammed: .* Remedies: `pitch 0\.77[0-9]*` for the warp", "weave_ragged": r":10:5: error: .*3 signs",
-                  "lapping_open": r":6:17: error: .*does not close",
-                  "loops_1e9": r":5:1: error: .*31623 yarns .*8e\+09 data points, about 2.4e\+04 GB",
-                  "empty": r":1:1: error: "}
+        places = {
+            "decimal_comma": r":5:12: error: .*comma",
+            "misspelt": r":3:3: error: .*diameter",
+            "nan": r":3:12: error: ",
+            "unknown_thread": r":2:8: error: .*nothread",
+            "version": r":1:8: error: ",
+            "no_end": r":\d+:\d+: error: .*end",
+            "short_grid": r":\d+:\d+: error: ",
+            "zero_length": r":\d+:\d+: error: ",
+            "binary": r":1:1: error: ",
+            "edit_joint": r":10:1: error: .*no joint 4",
+            "edit_weight": r":12:1: error: .*off the plane",
+            "piece_gap": r":5:3: error: line 'side' starts at",
+            "piece_open": r":6:3: error: .*not closed",
+            "piece_crossing": r":10:3: error: .*'a' and line 'c' meet at \(10, 10\)",
+            "piece_flat": r":3:1: error: .*no area",
+            "weave_pitch": r":7:3: error: the cloth is jammed: .* Remedies: `pitch 0\.77[0-9]*` for the warp",
+            "weave_ragged": r":10:5: error: .*3 signs",
+            "lapping_open": r":6:17: error: .*does not close",
+            "loops_1e9": r":5:1: error: .*31623 yarns .*8e\+09 data points, about 2.4e\+04 GB",
+            "empty": r":1:1: error: ",
+        }
         self.assertEqual(sorted(places), sorted(path.stem for path in BAD.glob("*.txt")))
         for name, pattern in places.items():
             with self.subTest(name):
@@ -198,8 +232,15 @@ class Bad(Case):
         for path in (self.folder, inside):
             path.chmod(0o755)
         out.chmod(0o777)
-        done = subprocess.run([program, "convert", inside, "--to", "iges", "-o", out], env=environment(), text=True,
-                              capture_output=True, user=65534, group=65534, extra_groups=[])
+        done = subprocess.run(
+            [program, "convert", inside, "--to", "iges", "-o", out],
+            env=environment(),
+            text=True,
+            capture_output=True,
+            user=65534,
+            group=65534,
+            extra_groups=[],
+        )
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stderr, "in/closed: error: cannot read the folder: Permission denied")
         self.assertEqual(list(files_below(out)), ["grid.igs"])
@@ -220,8 +261,12 @@ class Text(Case):
             with self.subTest(sample):
                 self.succeeds("convert", sample, "-o", self.folder / "again.txt")
                 first = self.succeeds("convert", sample, "--to", "iges", "-o", "-").stdout.splitlines()
-                second = self.succeeds("convert", self.folder / "again.txt", "--to", "iges", "-o", "-").stdout.splitlines()
-                self.assertEqual([line for line in first if line[72] == "P"], [line for line in second if line[72] == "P"])
+                second = self.succeeds(
+                    "convert", self.folder / "again.txt", "--to", "iges", "-o", "-"
+                ).stdout.splitlines()
+                self.assertEqual(
+                    [line for line in first if line[72] == "P"], [line for line in second if line[72] == "P"]
+                )
 
 
 if __name__ == "__main__":

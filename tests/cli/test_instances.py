@@ -39,7 +39,9 @@ class Instances(Case):
         files, self.reports, self.messages = {}, {}, {}
         for kind, words in (("full", []), ("short", ["--instances"])):
             folder = self.folder / kind
-            done = self.succeeds("convert", source, "-o", folder, "--report", self.folder / f"{kind}.json", *words, *options)
+            done = self.succeeds(
+                "convert", source, "-o", folder, "--report", self.folder / f"{kind}.json", *words, *options
+            )
             self.messages[kind] = done.stderr
             self.reports[kind] = json.loads((self.folder / f"{kind}.json").read_text())["inputs"][0]
             for name in ("igs", "stp"):
@@ -72,8 +74,9 @@ class Instances(Case):
         for options in ([], ["--iges-solid"], ["--ends", "planar"]):
             with self.subTest(options):
                 files = self.write(weave(6), *options)
-                full_igs, short_igs, full, short = self.totals(*(files[kind, name] for name in ("igs", "stp")
-                                                                 for kind in ("full", "short")))
+                full_igs, short_igs, full, short = self.totals(
+                    *(files[kind, name] for name in ("igs", "stp") for kind in ("full", "short"))
+                )
                 for key in ("fails", "roots", "faces", "solids", "valid"):
                     self.assertEqual(full_igs[key], short_igs[key], key)
                 self.assertEqual(full_igs["solids"], 12)
@@ -103,8 +106,9 @@ class Instances(Case):
                 for face in part.faces:
                     u0, u1, v0, v1 = face.surface.range
                     places = [(i / 4, j / 7) for i in range(5) for j in range(8)]
-                    faces.append([value for s, t in places
-                                  for value in face.surface.at(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t)])
+                    faces.append(
+                        [value for s, t in places for value in face.surface.at(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t)]
+                    )
             samples.append(sorted(faces, key=lambda values: [round(value, 6) for value in values]))
         self.assertEqual(len(samples[0]), 36)
         self.assertEqual(len(samples[1]), 36)
@@ -129,7 +133,9 @@ class Instances(Case):
         self.write(weave(6), "--to", "iges")
         source = self.folder / "w.txt"
         report = self.folder / "r.json"
-        self.succeeds("convert", source, "-o", self.folder / "s.igs", "--instances", "--iges-lines", 600, "--report", report)
+        self.succeeds(
+            "convert", source, "-o", self.folder / "s.igs", "--instances", "--iges-lines", 600, "--report", report
+        )
         outputs = json.loads(report.read_text())["inputs"][0]["outputs"]
         self.assertGreater(len(outputs), 1)
         self.assertEqual(sum(output["entities"].get("408", 0) for output in outputs), 12)

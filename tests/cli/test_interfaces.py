@@ -91,8 +91,11 @@ cell 0 0 0  1 1 1.1
 end
 """
 
-TEXTS = {"thick_plain": WEAVE.format(count=2, draft="plain"), "thick_twill": WEAVE.format(count=3, draft="twill 2/1"),
-         "crossed": CROSSED}
+TEXTS = {
+    "thick_plain": WEAVE.format(count=2, draft="plain"),
+    "thick_twill": WEAVE.format(count=3, draft="twill 2/1"),
+    "crossed": CROSSED,
+}
 
 LAMINATE = """fabric 1
 units mm
@@ -173,7 +176,9 @@ class Interfaces(Case):
 
     def homogenized(self, deck, *options):
         result = self.folder / "result.json"
-        done = subprocess.run([SCRIPTS / "homogenize", deck, "--json", result, *options], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [SCRIPTS / "homogenize", deck, "--json", result, *options], capture_output=True, text=True, check=False
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return json.loads(result.read_text())
 
@@ -230,8 +235,10 @@ class Cells(Interfaces):
         for axis, pairs in zip(axes, opposite):
             period = np.zeros(3)
             period[axis] = high[axis] - low[axis]
-            below, above = ({(deck.at[n], region) for n, region in region_of.items() if deck.nodes[n][axis] == plane}
-                            for plane in (low[axis], high[axis]))
+            below, above = (
+                {(deck.at[n], region) for n, region in region_of.items() if deck.nodes[n][axis] == plane}
+                for plane in (low[axis], high[axis])
+            )
             self.assertEqual(set(pairs), above)
             self.assertEqual(set(pairs.values()), below)
             face_high, face_low = deck.sets["Face" + "ACE"[axis]], deck.sets["Face" + "BDF"[axis]]
@@ -294,13 +301,20 @@ class Cells(Interfaces):
                 self.judge_faces(deck, region_of, axes, opposite)
                 self.judge_equations(deck, region_of, axes, opposite)
                 self.assertEqual(sum(len(r) for r in at.values()) - len(at), len(deck.nodes) - len(bonded.nodes))
-                print(f"{name}: {len(deck.solids)} tetrahedra, {len(deck.wedges)} wedges, "
-                      f"{len(deck.nodes) - len(bonded.nodes)} nodes doubled")
+                print(
+                    f"{name}: {len(deck.solids)} tetrahedra, {len(deck.wedges)} wedges, "
+                    f"{len(deck.nodes) - len(bonded.nodes)} nodes doubled"
+                )
 
     def test_the_console_counts_them(self):
-        for interface, words in (("cohesive", "{} cohesive elements in 1 interface"), ("surfaces", "1 interface of surfaces that face each other, {} triangles on either side")):
+        for interface, words in (
+            ("cohesive", "{} cohesive elements in 1 interface"),
+            ("surfaces", "1 interface of surfaces that face each other, {} triangles on either side"),
+        ):
             out = self.folder / f"{interface}.inp"
-            done = self.succeeds("mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--interface", interface, "-o", out)
+            done = self.succeeds(
+                "mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--interface", interface, "-o", out
+            )
             if interface == "cohesive":  # the first: the surfaces have as many triangles
                 count = len(interfaces.Deck(out).wedges)
             self.assertIn(words.format(count), done.stdout + done.stderr)
@@ -338,7 +352,9 @@ class Laws(Interfaces):
     """What is known in closed form."""
 
     def laminate(self, ply="", resin="", *options):
-        return self.deck(LAMINATE.format(ply=ply, resin=resin), "--interface", "cohesive", "--order", "1", "--size", "0.4", *options)
+        return self.deck(
+            LAMINATE.format(ply=ply, resin=resin), "--interface", "cohesive", "--order", "1", "--size", "0.4", *options
+        )
 
     def test_laminate(self):
         """Two half blocks, pulled apart and sheared: each interface opens by traction over stiffness, everywhere."""
@@ -348,8 +364,11 @@ class Laws(Interfaces):
         ply, resin = confined(5000, 0.3), confined(3000, 0.2)
         shear = 1 / (0.5 / (5000 / 2.6) + 0.5 / (3000 / 2.4) + 2 / along)
         stiffness = solved.stiffness / np.prod(deck.cell[1] - deck.cell[0])
-        for driver, direction, wanted, spring in ((2, 2, 1 / (0.5 / ply + 0.5 / resin + 2 / across), across),
-                                                  (4, 0, shear, along), (5, 1, shear, along)):
+        for driver, direction, wanted, spring in (
+            (2, 2, 1 / (0.5 / ply + 0.5 / resin + 2 / across), across),
+            (4, 0, shear, along),
+            (5, 1, shear, along),
+        ):
             self.assertAlmostEqual(stiffness[driver, driver] / wanted, 1, delta=1e-9)
             for first_second in (nodes for nodes in deck.wedges.values()):
                 for a, b in zip(first_second[:3], first_second[3:]):
@@ -382,8 +401,10 @@ class Laws(Interfaces):
             before = solved
 
     def test_weaker_one_holds(self):
-        deck = self.laminate(block(stiffness=(1e5, 2e4), strength=(30, 50), energy=(0.2, 0.9)),
-                             block(stiffness=(2e5, 1e4), strength=(40, 45), energy=(0.3, 0.8)))
+        deck = self.laminate(
+            block(stiffness=(1e5, 2e4), strength=(30, 50), energy=(0.2, 0.9)),
+            block(stiffness=(2e5, 1e4), strength=(40, 45), energy=(0.3, 0.8)),
+        )
         law = deck.materials["ply_resin"]
         self.assertEqual(law["traction"], [1e5, 1e4, 1e4])
         self.assertEqual(law["damage initiation"], [30, 45, 45])
@@ -391,8 +412,12 @@ class Laws(Interfaces):
 
     def test_energy_below_what_is_elastic(self):
         source = self.folder / "cell.txt"
-        source.write_text(LAMINATE.format(ply="", resin=block(stiffness=(1e3, 1e3), strength=(40, 40), energy=(0.2, 0.9))))
-        said = self.fails(1, "mesh", source, "--matrix", "--periodic", "--interface", "cohesive", "-o", self.out / "a.inp")
+        source.write_text(
+            LAMINATE.format(ply="", resin=block(stiffness=(1e3, 1e3), strength=(40, 40), energy=(0.2, 0.9)))
+        )
+        said = self.fails(
+            1, "mesh", source, "--matrix", "--periodic", "--interface", "cohesive", "-o", self.out / "a.inp"
+        )
         self.assertIn("takes 0.8 N/mm elastically up to its normal strength", said)
         self.assertIn("cell.txt:7", said)
 
@@ -404,16 +429,20 @@ class Surfaces(Interfaces):
         deck = self.deck(SAMPLES / "cell_straight.txt", "--interface", "surfaces", "--size", "0.25")
         region_of = deck.region_of_nodes()
         side, facing = deck.surfaces["tow_Side"], deck.surfaces["tow_Facing"]
+
         def triangles(rows):
             nodes = [[deck.solids[int(e)][i] for i in interfaces.TETRAHEDRON_FACES[int(s[1:]) - 1]] for e, s in rows]
             return {tuple(sorted(deck.at[n] for n in face)) for face in nodes}, {region_of[n] for f in nodes for n in f}
+
         own, of_tow = triangles(side)
         others, of_matrix = triangles(facing)
         self.assertEqual((of_tow, of_matrix), ({"tow"}, {"Matrix"}))
         self.assertEqual(own, others)
         tied = set(deck.sets["tow_Tied"])
         dependent = {first[0] for first, *_ in deck.equations}
-        on_side = {n for e, s in side for n in [deck.solids[int(e)][i] for i in interfaces.TETRAHEDRON_FACES[int(s[1:]) - 1]]}
+        on_side = {
+            n for e, s in side for n in [deck.solids[int(e)][i] for i in interfaces.TETRAHEDRON_FACES[int(s[1:]) - 1]]
+        }
         self.assertEqual(tied, on_side - dependent)
         self.assertEqual(deck.ties, [["tow_Tied", "tow_Facing"]])
 
@@ -423,20 +452,26 @@ class Surfaces(Interfaces):
         for order in ("1", "2"):
             found = []
             for interface, solver in (("bonded", "direct"), ("surfaces", "direct"), ("surfaces", "iterative")):
-                path = self.mesh(SAMPLES / "cell_straight.txt", "--interface", interface, "--order", order, "--size", "0.3")
+                path = self.mesh(
+                    SAMPLES / "cell_straight.txt", "--interface", interface, "--order", order, "--size", "0.3"
+                )
                 found.append(np.array(self.homogenized(path, "--solver", solver)["stiffness"]))
             for other in found[1:]:
                 np.testing.assert_allclose(other, found[0], atol=2e-5 * found[0].max())
 
     def test_bonded_yarns_are_tied_once(self):
-        deck = self.deck(SAMPLES / "cell_plain.txt", "--interface", "surfaces", "--bond", "--size", "0.15", "--order", "1")
+        deck = self.deck(
+            SAMPLES / "cell_plain.txt", "--interface", "surfaces", "--bond", "--size", "0.15", "--order", "1"
+        )
         tied = [n for name, own in deck.sets.items() if "_Tied" in name for n in own]
         self.assertEqual(len(tied), len(set(tied)))
 
 
 class OtherFormats(Interfaces):
     def everything(self, *options):
-        self.succeeds("mesh", SAMPLES / "cell_straight.txt", "--matrix", "--periodic", "--size", "0.25", *options, "-o", self.out)
+        self.succeeds(
+            "mesh", SAMPLES / "cell_straight.txt", "--matrix", "--periodic", "--size", "0.25", *options, "-o", self.out
+        )
         deck = self.out / "cell_straight.inp"
         return interfaces.Deck(deck) if deck.exists() else None
 
@@ -446,12 +481,15 @@ class OtherFormats(Interfaces):
         wanted = [nodes for _, nodes in sorted(deck.wedges.items())]
         self.assertEqual(self.of_cdb(), [[*w[:3], w[2], *w[3:], w[5]] for w in wanted])
         text = (self.out / "cell_straight.k").read_text()
-        solids = re.search(r"\*ELEMENT_SOLID\n((?: .*\n)+)\*(?!ELEMENT_SOLID)", text)[1].splitlines()[-len(wanted):]
-        self.assertEqual([[int(row[k : k + 8]) for k in range(16, 80, 8)] for row in solids],
-                         [[*w[:3], w[2], *w[3:], w[5]] for w in wanted])
+        solids = re.search(r"\*ELEMENT_SOLID\n((?: .*\n)+)\*(?!ELEMENT_SOLID)", text)[1].splitlines()[-len(wanted) :]
+        self.assertEqual(
+            [[int(row[k : k + 8]) for k in range(16, 80, 8)] for row in solids],
+            [[*w[:3], w[2], *w[3:], w[5]] for w in wanted],
+        )
         self.assertRegex(text, r"\*SECTION_SOLID\n +2 +21\n\*PART\ntow_Cohesive\n +3 +2 +3\n")
         self.assertIn("*MAT_COHESIVE_ELASTIC_TITLE\ntow_epoxy\n", text)
         import meshio
+
         for ending in ("msh", "vtu"):  # meshio numbers Gmsh's nodes anew
             mesh = meshio.read(self.out / f"cell_straight.{ending}")
             wedges = np.concatenate([block.data for block in mesh.cells if block.type == "wedge"])
@@ -477,6 +515,7 @@ class OtherFormats(Interfaces):
     def of_vtu(self):
         """Points, and by VTK's types the cells: meshio knows no wedge of twelve nodes."""
         text = (self.out / "cell_straight.vtu").read_text()
+
         def array(name, kind):
             code = re.search(rf'Name="{name}"[^>]*>\n(.*)\n', text)[1].strip()
             count = int(np.frombuffer(base64.b64decode(code[:32])[:8], "<u8")[0])
@@ -487,6 +526,7 @@ class OtherFormats(Interfaces):
                 parts += zlib.decompress(data[k : k + size])
                 k += size
             return np.frombuffer(parts, kind)
+
         nodes, ends, types = array("connectivity", "<i8"), array("offsets", "<i8"), array("types", "u1")
         cells = {}
         for begin, end, kind in zip([0, *ends[:-1]], ends, types):
@@ -505,8 +545,11 @@ class OtherFormats(Interfaces):
         p = points[wedges]
         np.testing.assert_array_equal(p[:, :3], p[:, 3:6])
         np.testing.assert_array_equal(p[:, 6:9], p[:, 9:12])
-        solids = {frozenset((row[a], row[b])): row[4 + m] for row in cells[24]
-                  for m, (a, b) in enumerate([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])}
+        solids = {
+            frozenset((row[a], row[b])): row[4 + m]
+            for row in cells[24]
+            for m, (a, b) in enumerate([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)])
+        }
         for w in wedges:
             for k, (a, b) in enumerate([(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3)]):
                 self.assertEqual(solids[frozenset((w[a], w[b]))], w[6 + k])
@@ -516,37 +559,69 @@ class OtherFormats(Interfaces):
         count = len(deck.surfaces["tow_Side"])
         text = (self.out / "cell_straight.k").read_text()
         for name in ("tow_Side", "tow_Facing"):
-            self.assertEqual(len(re.search(rf"\*SET_SEGMENT_TITLE\n{name}\n.*\n((?: .*\n)+)", text)[1].splitlines()), count)
+            self.assertEqual(
+                len(re.search(rf"\*SET_SEGMENT_TITLE\n{name}\n.*\n((?: .*\n)+)", text)[1].splitlines()), count
+            )
         self.assertIn("*CONTACT_TIED_SURFACE_TO_SURFACE_OFFSET_ID\n         1tow_Tied\n         1         2", text)
         archive = (self.out / "cell_straight.cdb").read_text()
-        for line in ("ET,3,170", "ET,4,174", "KEYOPT,4,12,5", "CMBLOCK,tow_Side,NODE", "CMSEL,S,tow_Facing,NODE", "ESURF"):
+        for line in (
+            "ET,3,170",
+            "ET,4,174",
+            "KEYOPT,4,12,5",
+            "CMBLOCK,tow_Side,NODE",
+            "CMSEL,S,tow_Facing,NODE",
+            "ESURF",
+        ):
             self.assertIn(line, archive)
         import meshio
+
         mesh = meshio.read(self.out / "cell_straight.msh")
         for name in ("tow_side", "matrix_tow"):
             self.assertEqual(sum(len(rows) for rows in mesh.cell_sets[name] if rows is not None and len(rows)), count)
         mesh = meshio.read(self.out / "cell_straight.vtu")
-        yarns = np.concatenate([rows for block, rows in zip(mesh.cells, mesh.cell_data["yarn"]) if block.type == "triangle"])
+        yarns = np.concatenate(
+            [rows for block, rows in zip(mesh.cells, mesh.cell_data["yarn"]) if block.type == "triangle"]
+        )
         self.assertEqual(sorted(yarns.tolist()), [-1] * count + [0] * count)
 
     def test_strength_everywhere(self):
         source = self.folder / "cell_straight.txt"
         given = block(stiffness=(1e5, 5e4), strength=(40, 60), energy=(0.2, 0.8))
         source.write_text((SAMPLES / "cell_straight.txt").read_text().replace("0.35\n", "0.35\n" + given, 1))
-        self.succeeds("mesh", source, "--matrix", "--periodic", "--size", "0.3", "--interface", "cohesive", "--to", "cdb,k", "-o", self.out)
+        self.succeeds(
+            "mesh",
+            source,
+            "--matrix",
+            "--periodic",
+            "--size",
+            "0.3",
+            "--interface",
+            "cohesive",
+            "--to",
+            "cdb,k",
+            "-o",
+            self.out,
+        )
         constants = re.search(r"TB,CZM,3,1,,BILI\nTBDATA,1,(.*)", (self.out / "cell_straight.cdb").read_text())[1]
         most, parted, shear, shear_parted, share, weight = map(float, constants.split(","))
-        np.testing.assert_allclose([most, most * parted / 2, shear, shear * shear_parted / 2, weight], [40, 0.2, 60, 0.8, 1])
+        np.testing.assert_allclose(
+            [most, most * parted / 2, shear, shear * shear_parted / 2, weight], [40, 0.2, 60, 0.8, 1]
+        )
         self.assertGreaterEqual(most / (share * parted), 1e5 * (1 - 1e-12))
         self.assertGreaterEqual(shear / (share * shear_parted), 5e4 * (1 - 1e-12))
-        card = re.search(r"\*MAT_COHESIVE_MIXED_MODE_TITLE\n.*\n(.*)\n(.*)\n", (self.out / "cell_straight.k").read_text())
+        card = re.search(
+            r"\*MAT_COHESIVE_MIXED_MODE_TITLE\n.*\n(.*)\n(.*)\n", (self.out / "cell_straight.k").read_text()
+        )
         self.assertEqual([float(word) for word in card[1].split()][3:], [1, 1e5, 5e4, 0.2, 0.8])
         self.assertEqual([float(word) for word in card[2].split()], [1, 40, 60])
 
     def test_what_cannot_be(self):
         cell, out = SAMPLES / "cell_straight.txt", self.out / "a.inp"
         for words, said in (
-            (("--matrix", "--interface", "cohesive", "--order", "2"), "inp has no elements for --interface cohesive --order 2"),
+            (
+                ("--matrix", "--interface", "cohesive", "--order", "2"),
+                "inp has no elements for --interface cohesive --order 2",
+            ),
             (("--matrix", "--interface", "cohesive", "--to", "bdf"), "bdf has no elements for --interface cohesive"),
             (("--matrix", "--interface", "surfaces", "--to", "unv"), "unv has no elements for --interface surfaces"),
             (("--matrix", "--interface", "cohesive", "--voxel", "8"), "--interface"),

@@ -43,7 +43,7 @@ class KeptVolume(Case):
 
     def test_a_torus(self):
         _, volumes, _, _ = self.mesh(RING)
-        self.assertLess(abs(volumes[0] / (2 * math.pi ** 2 * 5 * 0.25) - 1), TOLERANCE)
+        self.assertLess(abs(volumes[0] / (2 * math.pi**2 * 5 * 0.25) - 1), TOLERANCE)
 
     def test_dry_samples(self):
         for name in ("weave_plain", "ply3_z", "weave_racetrack"):
@@ -58,7 +58,9 @@ class KeptVolume(Case):
             for order in ("1", "2"):
                 with self.subTest(sample=name, order=order):
                     read, *_ = self.mesh(SAMPLES / (name + ".txt"), "--order", order)
-                    self.assertGreaterEqual(min(cell.dihedral_angles(read.points, rows).min() for rows in read.sets.values()), 10 - 1e-6)
+                    self.assertGreaterEqual(
+                        min(cell.dihedral_angles(read.points, rows).min() for rows in read.sets.values()), 10 - 1e-6
+                    )
 
     def test_no_tetrahedron_turns(self):
         """Coarse triangles over a sharp crest, whose points go far: as far as the tetrahedra below them are high."""
@@ -86,10 +88,13 @@ class KeptVolume(Case):
     def test_what_is_not_kept_is_told(self):
         """Seven coarse filaments that touch, of which the middle one has no room to grow; with nodes on its edges it is right."""
         text = (HEAD.replace("1e-5", "5e-4").format("ellipse 0.442 0.221") + yarn("y", "0 0 0", "0.122 0 0")).replace(
-            "\nend", "\n  filaments 7\n  packing 0.7\nend", 1)
+            "\nend", "\n  filaments 7\n  packing 0.7\nend", 1
+        )
         source, report = self.written(text), self.folder / "report.json"
         for order, is_kept in (("1", False), ("2", True)):
-            done = self.succeeds("mesh", source, "-o", self.folder / "a.inp", "--size", "0.033", "--order", order, "--report", report)
+            done = self.succeeds(
+                "mesh", source, "-o", self.folder / "a.inp", "--size", "0.033", "--order", order, "--report", report
+            )
             mesh = json.loads(report.read_text())["inputs"][0]["mesh"]
             worst = max(abs(region["volume_error"]) for region in mesh["regions"])
             self.assertEqual(worst < TOLERANCE, is_kept)
@@ -104,12 +109,18 @@ class KeptVolume(Case):
 
     def test_a_cell(self):
         """A straight tow through a block: half the ellipse's area times the length, and the console says the fractions."""
-        tow = (SAMPLES / "cell_straight.txt").read_text().replace("thread roving\n", "thread roving\n  tex 300\n  density 2.5\n")
+        tow = (
+            (SAMPLES / "cell_straight.txt")
+            .read_text()
+            .replace("thread roving\n", "thread roving\n  tex 300\n  density 2.5\n")
+        )
         _, volumes, entry, console = self.mesh(self.written(tow), "--matrix", "--periodic")
         exact = math.pi / 4 * 0.8 * 0.5
         self.assertLess(abs(volumes[0] / exact - 1), TOLERANCE)
         self.assertLess(abs(sum(volumes) / 0.7 - 1), 1e-12)
-        share = re.search(r"yarns fill (\S+) % of the cell \(wanted: (\S+) %\), fibres (\S+) %; volumes are right to", console)
+        share = re.search(
+            r"yarns fill (\S+) % of the cell \(wanted: (\S+) %\), fibres (\S+) %; volumes are right to", console
+        )
         self.assertIsNotNone(share, console)
         for found, wanted in zip(share.groups(), (exact, exact, 0.3 / 2.5)):  # 300 tex of 2.5 g/cm3: 0.12 mm2
             self.assertLess(abs(float(found) / (100 * wanted / 0.7) - 1), TOLERANCE)

@@ -28,8 +28,18 @@ class Killed(Case):
         moment = random.Random(20131104)
         stopped_midway = 0
         for number in range(MOMENTS):
-            process = start("convert", inside, "--to", "iges,txt", "-o", self.out, "-j", 2, stdout=subprocess.DEVNULL,
-                            stderr=subprocess.DEVNULL)
+            process = start(
+                "convert",
+                inside,
+                "--to",
+                "iges,txt",
+                "-o",
+                self.out,
+                "-j",
+                2,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
             time.sleep(moment.uniform(0, seconds))
             children = children_of(process.pid)
             process.send_signal(signal.SIGTERM if number % 2 else signal.SIGKILL)

@@ -30,15 +30,15 @@ def basis(knots, degree, t):
     rows = ((knots[:-1] <= t) & (t < knots[1:])).astype(float)
     for k in range(1, degree + 1):
         with np.errstate(divide="ignore", invalid="ignore"):
-            left = np.nan_to_num((t - knots[:-k - 1]) / (knots[k:-1] - knots[:-k - 1]), posinf=0, neginf=0)
-            right = np.nan_to_num((knots[k + 1:] - t) / (knots[k + 1:] - knots[1:-k]), posinf=0, neginf=0)
+            left = np.nan_to_num((t - knots[: -k - 1]) / (knots[k:-1] - knots[: -k - 1]), posinf=0, neginf=0)
+            right = np.nan_to_num((knots[k + 1 :] - t) / (knots[k + 1 :] - knots[1:-k]), posinf=0, neginf=0)
         rows = left * rows[:, :-1] + right * rows[:, 1:]
     return rows
 
 
 def inside(knots, degree, count):
     """Middles of equal shares of the spans: nodes of the midpoint rule."""
-    spans = np.unique(knots[degree:len(knots) - degree])
+    spans = np.unique(knots[degree : len(knots) - degree])
     return np.concatenate([a + (b - a) * (np.arange(count) + 0.5) / count for a, b in zip(spans, spans[1:])])
 
 
@@ -48,11 +48,11 @@ class Tube:
     def __init__(self, p):
         k1, k2, m1, m2 = map(int, p[1:5])
         at = 10
-        knots = [p[at:at + k1 + m1 + 2], p[at + k1 + m1 + 2:at + k1 + m1 + k2 + m2 + 4]]
+        knots = [p[at : at + k1 + m1 + 2], p[at + k1 + m1 + 2 : at + k1 + m1 + k2 + m2 + 4]]
         at += k1 + m1 + k2 + m2 + 4
         count = (k1 + 1) * (k2 + 1)
-        assert all(weight == 1 for weight in p[at:at + count])  # polynomial
-        net = np.array(p[at + count:at + 4 * count]).reshape(k2 + 1, k1 + 1, 3)
+        assert all(weight == 1 for weight in p[at : at + count])  # polynomial
+        net = np.array(p[at + count : at + 4 * count]).reshape(k2 + 1, k1 + 1, 3)
         round_, along = (basis(k, m, inside(k, m, n)) for k, m, n in zip(knots, (m1, m2), (16, 12)))
         self.points = round_ @ np.tensordot(along, net, 1)  # along, round, xyz
         self.axis = np.array([self.centroid(ring) for ring in self.points])
@@ -107,8 +107,11 @@ class KnitNumbers(Case):
     def test_jersey_of_18_courses_13_wales_and_loops_of_2_8_mm(self):
         sample = (SAMPLES / "knit_jersey_density.txt").read_text()
         self.assertIn("courses 6 pitch 0.5555556", sample)
-        for text in (sample, sample.replace("knit jersey\n", "knit jersey\n  shape relaxed\n"),
-                     sample.replace("courses 6", "courses 3").replace("wales   5", "wales   12")):
+        for text in (
+            sample,
+            sample.replace("knit jersey\n", "knit jersey\n  shape relaxed\n"),
+            sample.replace("courses 6", "courses 3").replace("wales   5", "wales   12"),
+        ):
             tubes = self.tubes(text)
             wales = 12 if "wales   12" in text else 5
             self.assertEqual(len(tubes), 3 if wales == 12 else 6)
@@ -116,7 +119,7 @@ class KnitNumbers(Case):
                 self.assertAlmostEqual(tube.length() / wales, 2.8, delta=0.01 * 2.8)
                 # A head a wale.
                 y = tube.axis[:, 1]
-                heads = [i for i in range(2, len(y) - 2) if y[i] == max(y[i - 2:i + 3]) and y[i] > y.mean()]
+                heads = [i for i in range(2, len(y) - 2) if y[i] == max(y[i - 2 : i + 3]) and y[i] > y.mean()]
                 self.assertEqual(len(heads), wales)
                 for one, next_one in zip(heads, heads[1:]):
                     pitch = tube.axis[next_one, 0] - tube.axis[one, 0]
@@ -131,8 +134,10 @@ class KnitNumbers(Case):
         """Goktepe's yarn: its radius follows from linear density and material. W. E. Morton and J. W. S.
         Hearle (Physical Properties of Textile Fibres, 4th ed., table 5.1) give polyester 1.39 g/cm3, nylon 1.14."""
         for material, density in (("polyester", 1.39), ("nylon", 1.14)):
-            text = (f"fabric 1\nthread mono\n  dtex 76\n  material {material}\n  filaments 1\nend\n"
-                    "warpknit tricot\n  thread mono\n  wales 2 pitch 0.9\n  courses 3 pitch 0.6\nend\n")
+            text = (
+                f"fabric 1\nthread mono\n  dtex 76\n  material {material}\n  filaments 1\nend\n"
+                "warpknit tricot\n  thread mono\n  wales 2 pitch 0.9\n  courses 3 pitch 0.6\nend\n"
+            )
             for tube in self.tubes(text):
                 # g/m of what was built: mm2 times g/cm3.
                 self.assertAlmostEqual(tube.volume() / tube.length() * density, 7.6e-3, delta=0.01 * 7.6e-3)

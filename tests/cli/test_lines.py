@@ -38,7 +38,7 @@ ROWS = np.array([[0, 0, 0], [1, 0.5, 0.2], [1.5, 2, -0.1], [3, 2.5, 0.3], [5, 2,
 
 def parameters(points, how):
     power = {"uniform": 0, "chord": 1, "centripetal": 0.5}[how]
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)**power
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1) ** power
     return np.concatenate([[0], np.cumsum(steps) / np.sum(steps)])
 
 
@@ -121,8 +121,10 @@ def vtp(path):
     lines = {a.get("Name"): array(a).astype(int) for a in piece.find("Lines")}
     assert int(piece.get("NumberOfPoints")) == len(data["points"]) == len(lines["connectivity"])
     ends = [0, *lines["offsets"]]
-    return {name: {key: value[lines["connectivity"][a:b]] for key, value in data.items()}
-            for name, a, b in zip(names, ends, ends[1:])}
+    return {
+        name: {key: value[lines["connectivity"][a:b]] for key, value in data.items()}
+        for name, a, b in zip(names, ends, ends[1:])
+    }
 
 
 class Lines(Case):
@@ -176,7 +178,7 @@ class Lines(Case):
             knots = axis.knots[3:-3]
             self.assertEqual(len(points), 3 * (len(knots) - 1) + 1)
             for k, (a, b) in enumerate(zip(knots, knots[1:])):
-                p = points[3 * k:3 * k + 4]
+                p = points[3 * k : 3 * k + 4]
                 middle = (p[0] + 3 * p[1] + 3 * p[2] + p[3]) / 8
                 self.assert_near(middle, axis((a + b) / 2)[:2] * [1, -1], 1e-9)
 
@@ -188,7 +190,7 @@ class Lines(Case):
             axis = Axis(ROWS, how, np.array([6, -2, 1]), np.array([3, -9, 0.5]))
             line = vtp(self.out / f"{how}.vtp")["a, b"]
             self.assert_near(line["points"], [axis(t) for t in line["parameter"]], 1e-12)
-            (ts, points), = gmsh_curves(self.out / f"{how}.igs")
+            ((ts, points),) = gmsh_curves(self.out / f"{how}.igs")
             self.assert_near(points, [axis(t) for t in ts], 1e-9)
             again = self.folder / "again.txt"
             self.succeeds("convert", source, "-o", again)
@@ -216,7 +218,7 @@ class Lines(Case):
                 before, here, after = axis(t - h), axis(t), axis(t + h)
                 d1, d2 = (after - before) / (2 * h), (after - 2 * here + before) / h**2
                 self.assert_near(tangent, d1 / np.linalg.norm(d1), 1e-5)
-                curvature = np.linalg.norm(np.cross(d1, d2)) / np.linalg.norm(d1)**3
+                curvature = np.linalg.norm(np.cross(d1, d2)) / np.linalg.norm(d1) ** 3
                 self.assertAlmostEqual(line["curvature"][i], curvature, delta=1e-4 * (1 + curvature))
         # No chord is farther from the line than the tolerance.
         for a, b, p, q in zip(line["parameter"], line["parameter"][1:], line["points"], line["points"][1:]):
@@ -227,8 +229,13 @@ class Lines(Case):
             table = list(csv.DictReader(file))
         self.assertEqual([r["yarn"] for r in table], ["a, b"] * len(line["points"]))
         self.assertEqual([int(r["point"]) for r in table], list(range(1, len(table) + 1)))
-        for column, values in (("x_mm", line["points"][:, 0]), ("side_y", line["side"][:, 1]), ("radius_mm", line["radius"]),
-                               ("curvature_per_mm", line["curvature"]), ("arc_length_mm", line["arc_length"])):
+        for column, values in (
+            ("x_mm", line["points"][:, 0]),
+            ("side_y", line["side"][:, 1]),
+            ("radius_mm", line["radius"]),
+            ("curvature_per_mm", line["curvature"]),
+            ("arc_length_mm", line["arc_length"]),
+        ):
             self.assertEqual([float(r[column]) for r in table], list(values))
 
     def test_rational_lines(self):
@@ -269,10 +276,14 @@ class Lines(Case):
         self.assertIn("txt holds no centre lines", self.fails(1, "convert", RING, "--lines", "-o", self.out / "r.txt"))
         self.assertIn("--lines", self.fails(1, "convert", RING, "-o", self.out / "r.svg"))
         self.assertIn("--cut", self.fails(2, "convert", RING, "--lines", "--cut"))
-        self.assertIn("holds no garment pieces", self.fails(1, "convert", SAMPLES / "back_piece.txt", "-o", self.out / "b.vtp"))
+        self.assertIn(
+            "holds no garment pieces", self.fails(1, "convert", SAMPLES / "back_piece.txt", "-o", self.out / "b.vtp")
+        )
         tight = self.folder / "tight.txt"
-        tight.write_text("fabric 1\nthread t\n diameter 0.5\nend\nyarn bent t\n path polyline\n 0 0 0\n 1 0 0\n 1 1 0\n end\nend\n"
-                         "yarn hair t\n path\n 0 0 5\n 1 0 5\n 1 0.1 5\n 0 0.1 5\n end\nend\n")
+        tight.write_text(
+            "fabric 1\nthread t\n diameter 0.5\nend\nyarn bent t\n path polyline\n 0 0 0\n 1 0 0\n 1 1 0\n end\nend\n"
+            "yarn hair t\n path\n 0 0 5\n 1 0 5\n 1 0.1 5\n 0 0.1 5\n end\nend\n"
+        )
         told = self.succeeds("convert", tight, "--lines", "-o", self.out / "t.vtp").stderr
         self.assertRegex(told, r"hair.*radius")
         hair = vtp(self.out / "t.vtp")["hair"]

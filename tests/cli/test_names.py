@@ -20,8 +20,10 @@ end
 
 def pair(number, apart, begin=""):
     """Two straight yarns beside each other, their centre lines this far apart."""
-    return "".join(f"yarn {begin}{letter}{number} t\n path\n 0 {y} 0\n 1 {y} 0\n end\nend\n"
-                   for letter, y in (("a", 2 * number), ("b", round(2 * number + apart, 4))))
+    return "".join(
+        f"yarn {begin}{letter}{number} t\n path\n 0 {y} 0\n 1 {y} 0\n end\nend\n"
+        for letter, y in (("a", 2 * number), ("b", round(2 * number + apart, 4)))
+    )
 
 
 class Steering(Case):
@@ -31,12 +33,19 @@ class Steering(Case):
         broken = self.folder / f"{STEERING}.stp"
         broken.write_text("no STEP")
         report = self.folder / "report.json"
-        for arguments in (("info", source), ("check", source), ("roundtrip", source, "--to", "iges"),
-                          ("convert", source, "--to", "iges", "-o", f"{self.folder}/{STEERING}/", "-v"), ("diff", source, PATH),
-                          ("info", broken), ("check", self.folder / f"{STEERING}-none.txt"),
-                          ("convert", source, "-o", f"{self.folder}/{STEERING}.{STEERING}"),
-                          ("relax", source, "-o", f"{self.folder}/relaxed/"), ("convert", "--" + STEERING),
-                          ("view", source, "--size", "8x8", "-o", f"{self.folder}/{STEERING}.png", "-v")):
+        for arguments in (
+            ("info", source),
+            ("check", source),
+            ("roundtrip", source, "--to", "iges"),
+            ("convert", source, "--to", "iges", "-o", f"{self.folder}/{STEERING}/", "-v"),
+            ("diff", source, PATH),
+            ("info", broken),
+            ("check", self.folder / f"{STEERING}-none.txt"),
+            ("convert", source, "-o", f"{self.folder}/{STEERING}.{STEERING}"),
+            ("relax", source, "-o", f"{self.folder}/relaxed/"),
+            ("convert", "--" + STEERING),
+            ("view", source, "--size", "8x8", "-o", f"{self.folder}/{STEERING}.png", "-v"),
+        ):
             done = run(*arguments)
             text = done.stdout + done.stderr
             self.assertEqual(re.findall("[^\n -~]", text), [], arguments)
@@ -63,8 +72,12 @@ class Long(Case):
         self.source.write_text(f'title "{LONG}"\n'.join(("fabric 1\n", "")) + CROSSING[9:] + pair(1, 0.4, LONG))
 
     def test_tables_and_lines(self):
-        for arguments in (("info", self.source), ("check", self.source), ("roundtrip", self.source, "--to", "iges"),
-                          ("diff", self.source, GRID)):
+        for arguments in (
+            ("info", self.source),
+            ("check", self.source),
+            ("roundtrip", self.source, "--to", "iges"),
+            ("diff", self.source, GRID),
+        ):
             done = run(*arguments)
             lines = (done.stdout + done.stderr).splitlines()
             self.assertLess(max(map(len, lines)), 240, arguments)
@@ -98,7 +111,10 @@ class Many(Case):
         self.assertEqual(done.returncode, 3, done.stderr)
         lines = done.stderr.splitlines()
         self.assertEqual(len(lines), 21, done.stderr)
-        self.assertRegex(lines[-1], r"error: x94, of which 74 are not shown; the worst: yarns 'a70' and 'b70' overlap, 0\.10\d* mm deep")
+        self.assertRegex(
+            lines[-1],
+            r"error: x94, of which 74 are not shown; the worst: yarns 'a70' and 'b70' overlap, 0\.10\d* mm deep",
+        )
         self.assertRegex(done.stdout, "94 defects")
         report = self.folder / "report.json"
         run("check", source, "--report", report)

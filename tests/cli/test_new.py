@@ -66,7 +66,9 @@ class New(Case):
         os.symlink(self.folder / "nowhere", dangling)
         self.fails(2, "new", "plain", "-o", dangling)
         self.succeeds("new", "plain", "-o", self.folder / "below" / "new.txt")
-        self.assertEqual((self.folder / "below" / "new.txt").read_text(), self.succeeds("new", "plain", "-o", "-").stdout)
+        self.assertEqual(
+            (self.folder / "below" / "new.txt").read_text(), self.succeeds("new", "plain", "-o", "-").stdout
+        )
 
 
 if __name__ == "__main__":

@@ -61,7 +61,9 @@ class Deck:
                 if line.startswith("**"):
                     continue
                 words = [word.strip() for word in line.split(",")]
-                block, name = words[0].upper(), next((w.split("=")[1] for w in words if w.upper().startswith("NSET=")), None)
+                block, name = words[0].upper(), next(
+                    (w.split("=")[1] for w in words if w.upper().startswith("NSET=")), None
+                )
             elif block == "*NODE":
                 number, *at = line.split(",")
                 self.nodes[int(number)] = np.array(at, float)
@@ -76,9 +78,9 @@ class Deck:
         flat = [word for row in rows for word in row]
         while flat:
             count = int(flat[0])
-            terms = np.array(flat[1:1 + 3 * count], float).reshape(-1, 3)
+            terms = np.array(flat[1 : 1 + 3 * count], float).reshape(-1, 3)
             self.equations.append([(int(n), int(d), f) for n, d, f in terms])
-            flat = flat[1 + 3 * count:]
+            flat = flat[1 + 3 * count :]
 
 
 class Oblique(Case):
@@ -89,8 +91,13 @@ class Oblique(Case):
         return deck, self.succeeds("mesh", source, "--matrix", "--periodic", *more, "-o", deck)
 
     def stiffness(self, deck, solver="iterative"):
-        run = subprocess.run([sys.executable, HOMOGENIZE, deck, "--json", "-", "--solver", solver], capture_output=True,
-                             text=True, check=False, env=os.environ)
+        run = subprocess.run(
+            [sys.executable, HOMOGENIZE, deck, "--json", "-", "--solver", solver],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=os.environ,
+        )
         self.assertEqual(run.returncode, 0, run.stderr)
         result = json.loads(run.stdout)
         return np.array(result["stiffness"]), result
@@ -130,8 +137,11 @@ class Oblique(Case):
 
     def test_a_cohesive_interface(self):
         """The stiffness is that of the bonded cell to a thousandth, in an oblique one as well."""
-        stacked = TWILL.replace("periodic x y", "periodic x y z").replace("ellipse 0.8 0.3", "ellipse 0.8 0.5").replace(
-            VECTORS, f"{VECTORS}  0 0 1.2")
+        stacked = (
+            TWILL.replace("periodic x y", "periodic x y z")
+            .replace("ellipse 0.8 0.3", "ellipse 0.8 0.5")
+            .replace(VECTORS, f"{VECTORS}  0 0 1.2")
+        )
         bonded, _ = self.mesh(stacked, "bonded", "--size", "0.5", "--order", "1")
         cohesive, _ = self.mesh(stacked, "cohesive", "--size", "0.5", "--order", "1", "--interface", "cohesive")
         wanted, found = self.stiffness(bonded)[0], self.stiffness(cohesive)[0]
@@ -147,8 +157,10 @@ class Oblique(Case):
         deck = Deck(self.both("--size", "0.5", "--order", "1")[0])
         corner, edges = deck.cell[0], deck.cell[1:]
         strain = np.array([[1.0, 0.3, -0.2], [0.3, -0.7, 0.5], [-0.2, 0.5, 0.4]])
-        value = {d: strain[i, j] * (1 if i == j else 2)
-                 for d, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])}
+        value = {
+            d: strain[i, j] * (1 if i == j else 2)
+            for d, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])
+        }
         drivers = {deck.sets[f"ConstraintsDriver{d}"][0]: value[d] for d in value}
         dependent = set()
         for equation in deck.equations:
@@ -173,8 +185,7 @@ class Oblique(Case):
         self.assertIn("not periodic along its second vector", told)
         right = re.search(r"`(cell vectors [^`]*)`", told)[1]
         deck, _ = self.mesh(TWILL.replace(VECTORS, right), "right", "--voxel", "16")
-        self.assertAlmostEqual(np.linalg.det(Deck(deck).cell[1:, :])
-                               / Deck(deck).cell[3][2], 4 * 1.2**2, 9)
+        self.assertAlmostEqual(np.linalg.det(Deck(deck).cell[1:, :]) / Deck(deck).cell[3][2], 4 * 1.2**2, 9)
 
     def test_a_flat_tow_that_the_face_cuts_at_a_slant(self):
         """Its lens of 14.5 degrees ends in needles, 4.6 degrees sharp in the face; tetrahedra are hardly flatter than the lens."""

@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tests" / "formats" / "decks"))
 import inp
 
 SCRIPT = ROOT / "scripts" / "odb_stiffness.py"
-ODB = '''
+ODB = """
 import json
 
 class Value:
@@ -67,7 +67,7 @@ def openOdb(path, readOnly):
     assert readOnly
     with open(path) as file:
         return Odb(json.load(file))
-'''
+"""
 
 
 class Odb(Case):
@@ -117,7 +117,13 @@ class Odb(Case):
     def reads(self, said, *options, code=0, name="cell.odb"):
         (self.folder / name).write_text(json.dumps(said))
         environment = {**os.environ, "PYTHONPATH": str(self.modules)}
-        done = subprocess.run([sys.executable, SCRIPT, self.folder / name, *options], env=environment, text=True, capture_output=True, check=False)
+        done = subprocess.run(
+            [sys.executable, SCRIPT, self.folder / name, *options],
+            env=environment,
+            text=True,
+            capture_output=True,
+            check=False,
+        )
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
@@ -127,7 +133,11 @@ class Odb(Case):
         found, expected = self.folder / "found.json", self.folder / "expected.json"
         done = self.reads(said, "--json", found)
         solver = "direct" if dry else "iterative"  # as far as it can be another one than that of the forces
-        subprocess.run([sys.executable, ROOT / "scripts" / "homogenize.py", deck, "--solver", solver, "--json", expected], check=True, capture_output=True)
+        subprocess.run(
+            [sys.executable, ROOT / "scripts" / "homogenize.py", deck, "--solver", solver, "--json", expected],
+            check=True,
+            capture_output=True,
+        )
         found, expected = json.loads(found.read_text()), json.loads(expected.read_text())
         size = numpy.abs(expected["stiffness"]).max(axis=0)
         numpy.testing.assert_allclose(found["stiffness"] / size, expected["stiffness"] / size, atol=1e-5)
@@ -170,7 +180,15 @@ class Odb(Case):
     def test_python_2_reads_it(self):
         """Nothing that the Python 2.7 of Abaqus before 2024 does not know."""
         tree = ast.parse(SCRIPT.read_text())
-        later = (ast.JoinedStr, ast.Starred, ast.AnnAssign, ast.Nonlocal, ast.NamedExpr, ast.YieldFrom, ast.AsyncFunctionDef)
+        later = (
+            ast.JoinedStr,
+            ast.Starred,
+            ast.AnnAssign,
+            ast.Nonlocal,
+            ast.NamedExpr,
+            ast.YieldFrom,
+            ast.AsyncFunctionDef,
+        )
         for node in ast.walk(tree):
             self.assertNotIsInstance(node, later)
             if isinstance(node, ast.FunctionDef):

@@ -42,11 +42,14 @@ end
 ROD = HEAD.format(diameter=0.8) + "yarn rod wire\n  path\n    -2 0 0\n    4 0 0\n  end\nend\n"
 RADIUS, PITCH, WIRE = 1.0, 9.0, 0.2
 ROPE = HEAD.format(diameter=2 * WIRE) + "".join(
-    f"yarn ply{k} wire\n  helix radius {RADIUS} pitch {PITCH} turns 2 start {120 * k}deg\nend\n" for k in range(3))
+    f"yarn ply{k} wire\n  helix radius {RADIUS} pitch {PITCH} turns 2 start {120 * k}deg\nend\n" for k in range(3)
+)
 # Between two planes a third of the pitch apart each ply goes on where the next one began.
 ROPE += f"cell -1.5 -1.5 6  1.5 1.5 {6 + PITCH / 3}\n  periodic z\nend\n"
-TUBE = HEAD.format(diameter=0.3) + ("braid\n  thread wire\n  carriers 6\n  pattern 1/1\n  radius 2.5\n  angle 40\n  length 10\nend\n"
-                                    "cell repeat\nend\n")
+TUBE = HEAD.format(diameter=0.3) + (
+    "braid\n  thread wire\n  carriers 6\n  pattern 1/1\n  radius 2.5\n  angle 40\n  length 10\nend\n"
+    "cell repeat\nend\n"
+)
 
 
 def circle(radius):
@@ -62,10 +65,13 @@ def compliance(places, tangents, lengths, radius):
     moments = np.stack([np.cross(axis, places), np.broadcast_to(axis, places.shape)])
     along = [(some * tangents).sum(axis=2) for some in (forces, moments)]
     across = [some - part[:, :, None] * tangents for some, part in zip((forces, moments), along)]
-    result = sum(np.einsum("in,jn,n->ij", part, part, lengths) / stiff
-                 for part, stiff in zip(along, (E * area, G * torsion)))
-    return result + sum(np.einsum("inc,jnc,n->ij", part, part, lengths) / stiff
-                        for part, stiff in zip(across, (SHEAR * G * area, E * second)))
+    result = sum(
+        np.einsum("in,jn,n->ij", part, part, lengths) / stiff for part, stiff in zip(along, (E * area, G * torsion))
+    )
+    return result + sum(
+        np.einsum("inc,jnc,n->ij", part, part, lengths) / stiff
+        for part, stiff in zip(across, (SHEAR * G * area, E * second))
+    )
 
 
 class OneAxis(Case):
@@ -77,7 +83,9 @@ class OneAxis(Case):
         return deck, done.stderr
 
     def homogenize(self, *arguments):
-        return subprocess.run([sys.executable, HOMOGENIZE, *arguments], capture_output=True, text=True, check=False, env=os.environ)
+        return subprocess.run(
+            [sys.executable, HOMOGENIZE, *arguments], capture_output=True, text=True, check=False, env=os.environ
+        )
 
     def stiffness(self, text, *options, solver="direct"):
         if solver == "direct" and shutil.which("ccx") is None:
@@ -101,7 +109,9 @@ class OneAxis(Case):
         """About its own axis, and about one beside it, to which it is free to turn: only its stretch has an arm."""
         area, second, torsion = circle(0.4)
         for solver in ("direct", "iterative"):
-            ours, facts = self.stiffness(ROD + "cell 0 -1 -1  1 1 1\n  periodic x\nend\n", "--size", "0.2", solver=solver)
+            ours, facts = self.stiffness(
+                ROD + "cell 0 -1 -1  1 1 1\n  periodic x\nend\n", "--size", "0.2", solver=solver
+            )
             self.assert_near(ours, np.diag([E * area, G * torsion, E * second, E * second]), 1e-3)
             self.assertEqual(facts["axis"], "x")
             self.assertAlmostEqual(facts["expansion"]["alpha"], 12e-6, 9)
@@ -114,18 +124,27 @@ class OneAxis(Case):
 
     def test_a_bar_of_two_materials(self):
         """A round core in a square along y. Poisson's ratios are equal, so that it stretches and bends without stresses across."""
-        text = ROD.replace("-2 0 0", "0 -2 0").replace("4 0 0", "0 4 0") + "cell -0.6 0 -0.7  0.6 1 0.7\n  matrix {}\n  periodic y\nend\n"
+        text = (
+            ROD.replace("-2 0 0", "0 -2 0").replace("4 0 0", "0 4 0")
+            + "cell -0.6 0 -0.7  0.6 1 0.7\n  matrix {}\n  periodic y\nend\n"
+        )
         area, second, _ = circle(0.4)
         a, b = 1.2, 1.4
         ours, facts = self.stiffness(text.format("soft"), "--matrix", "--size", "0.25")
         self.assertEqual(facts["order"][2:], ["bending_x", "bending_z"])
         soft, more = 50000.0, E - 50000.0
-        wanted = [soft * a * b + more * area, soft * b * a**3 / 12 + more * second, soft * a * b**3 / 12 + more * second]
+        wanted = [
+            soft * a * b + more * area,
+            soft * b * a**3 / 12 + more * second,
+            soft * a * b**3 / 12 + more * second,
+        ]
         np.testing.assert_allclose(np.diag(ours)[[0, 2, 3]], wanted, rtol=1e-3)
         # Of one material: Saint-Venant's series for a rectangle.
         ours, _ = self.stiffness(text.format("steel"), "--matrix", "--size", "0.3")
         odd = np.arange(1, 60, 2)
-        torsion = b * a**3 / 3 * (1 - 192 * a / (np.pi**5 * b) * (np.tanh(odd * np.pi * b / (2 * a)) / odd**5).sum())
+        torsion = (
+            b * a**3 / 3 * (1 - 192 * a / (np.pi**5 * b) * (np.tanh(odd * np.pi * b / (2 * a)) / odd**5).sum())
+        )
         wanted = np.diag([E * a * b, G * torsion, E * b * a**3 / 12, E * a * b**3 / 12])
         self.assert_near(ours, wanted, 5e-3)
 
@@ -138,7 +157,9 @@ class OneAxis(Case):
         wanted[:2, :2] = 3 * np.linalg.inv(compliance(place, tangent, np.array([1 / np.sin(t)]), WIRE))
         # A moment across the axis twists and bends the wire by turns.
         _, second, torsion = circle(WIRE)
-        wanted[2, 2] = wanted[3, 3] = 3 * np.sin(t) / (np.cos(t)**2 / (2 * G * torsion) + (1 - np.cos(t)**2 / 2) / (E * second))
+        wanted[2, 2] = wanted[3, 3] = (
+            3 * np.sin(t) / (np.cos(t) ** 2 / (2 * G * torsion) + (1 - np.cos(t) ** 2 / 2) / (E * second))
+        )
         self.assertLess(wanted[0, 1], 0)
         ours, _ = self.stiffness(ROPE, "--segments", "10")
         self.assert_near(ours, wanted, 1.2e-2)
@@ -162,7 +183,9 @@ class OneAxis(Case):
             tangents = middle[:, 3:] / np.linalg.norm(middle[:, 3:], axis=1)[:, None]
             self.assertAlmostEqual(np.ptp(line[:, 2]), length, 6)
             hand = np.sign(np.cross(middle[0, :2], tangents[0, :2]))
-            by_hand.setdefault(float(hand), []).append(compliance(middle[:, :3] * [1, 1, 0], tangents, ways, 0.15) / length)
+            by_hand.setdefault(float(hand), []).append(
+                compliance(middle[:, :3] * [1, 1, 0], tangents, ways, 0.15) / length
+            )
         # Of one hand they follow each other round the tube: one yarn in the eyes of the cell.
         wanted = sum(len(some) * np.linalg.inv(np.mean(some, axis=0)) for some in by_hand.values())
         self.assert_near(ours[:2, :2], wanted, 1e-2)
@@ -179,7 +202,9 @@ class OneAxis(Case):
         self.assertEqual(len({node for node, _ in held}), 6)
         self.assertEqual([direction == 0 for _, direction in held], [True, False] * 3)
         self.assertNotIn(3, [direction for _, direction in held])
-        bdf = [tuple(map(int, found)) for found in re.findall(r"^SPC1\* +1 +(\d+) +(\d+)$", files[".bdf"], re.MULTILINE)]
+        bdf = [
+            tuple(map(int, found)) for found in re.findall(r"^SPC1\* +1 +(\d+) +(\d+)$", files[".bdf"], re.MULTILINE)
+        ]
         self.assertEqual([(node, 0 if c == 123 else c) for c, node in bdf if c != 23], held)
         block = files[".k"].split("*BOUNDARY_SPC_NODE\n")[1].split("*")[0]
         rows = [list(map(int, line.split())) for line in block.splitlines()][:6]
@@ -193,17 +218,31 @@ class OneAxis(Case):
         _, said = self.mesh(ROD + "cell 0 -1 -1  1 1 1\n  periodic x\nend\n", "--order", "1")
         self.assertIn("tetrahedra of four nodes make a beam too stiff in bending", said)
         source = self.folder / "ring.txt"
-        source.write_text(ROD.replace("-2 0 0", "-5 0 0").replace("4 0 0", "6 0 0") + "yarn ring wire\n  closed\n  path\n    0.5 2 0\n    2.5 4 0\n    0.5 6 0\n    -1.5 4 0\n  end\nend\n"
-                          "cell -3 -1 -1  4 8 1\n  periodic x\nend\n")
+        source.write_text(
+            ROD.replace("-2 0 0", "-5 0 0").replace("4 0 0", "6 0 0")
+            + "yarn ring wire\n  closed\n  path\n    0.5 2 0\n    2.5 4 0\n    0.5 6 0\n    -1.5 4 0\n  end\nend\n"
+            "cell -3 -1 -1  4 8 1\n  periodic x\nend\n"
+        )
         told = self.fails(1, "mesh", source, "--periodic", "-o", self.folder / "ring.inp")
-        self.assertRegex(told, r"a part of 'ring' reaches neither end of this cell.* nothing holds it; put it into a matrix")
+        self.assertRegex(
+            told, r"a part of 'ring' reaches neither end of this cell.* nothing holds it; put it into a matrix"
+        )
         run = self.homogenize(self.folder / "cell.inp", "--bounds")
         self.assertEqual(run.returncode, 1)
         self.assertIn("bounds are known of blocks and plates", run.stderr)
 
     def test_homogenize_meshes_yarns_alone(self):
         (self.folder / "rod.txt").write_text(ROD + "cell 0 -1 -1  1 1 1\n  periodic x\nend\n")
-        run = self.homogenize(self.folder / "rod.txt", "--dry", "--size", "0.3", "--solver", "iterative", "--selvage", os.environ["SELVAGE"])
+        run = self.homogenize(
+            self.folder / "rod.txt",
+            "--dry",
+            "--size",
+            "0.3",
+            "--solver",
+            "iterative",
+            "--selvage",
+            os.environ["SELVAGE"],
+        )
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("beam stiffness (N, N mm, N mm2) - stretch twist bending_y bending_z", run.stdout)
         self.assertRegex(run.stdout, r"EI_z +40[12]\d")

@@ -26,9 +26,19 @@ class Places(Case):
         self.succeeds("relax", PATH, "-o", self.folder / "relaxed")
         self.succeeds("mesh", GRID, "--size", "0.4", "-o", self.folder / "meshed")
         self.succeeds("view", RING, "--size", "8x8", "-o", self.folder / "seen")
-        self.succeeds("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0.4,0.5,0.2", "-o", self.folder / "edited")
-        self.assertEqual(self.names(), ["edited/plain4_path.txt", "meshed/plain4_grid.inp", "plain/plain4_grid.igs",
-                                        "relaxed/plain4_path.txt", "seen/ring.png"])
+        self.succeeds(
+            "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0.4,0.5,0.2", "-o", self.folder / "edited"
+        )
+        self.assertEqual(
+            self.names(),
+            [
+                "edited/plain4_path.txt",
+                "meshed/plain4_grid.inp",
+                "plain/plain4_grid.igs",
+                "relaxed/plain4_path.txt",
+                "seen/ring.png",
+            ],
+        )
 
     def test_a_name_that_is_fixed(self):
         """Equal content is equal bytes under every name, if what headers call the file is said."""
@@ -49,20 +59,31 @@ class Places(Case):
 
     def test_a_time_that_is_none(self):
         for moment in ("yesterday", "", "1.5", "-1", "253402300800"):
-            message = self.fails(2, "convert", GRID, "-o", self.folder / "x.igs", env=environment(SOURCE_DATE_EPOCH=moment))
+            message = self.fails(
+                2, "convert", GRID, "-o", self.folder / "x.igs", env=environment(SOURCE_DATE_EPOCH=moment)
+            )
             self.assertIn(f"selvage: error: SOURCE_DATE_EPOCH is '{moment}'", message)
             self.assertEqual(self.names(), [])
 
     def test_an_extension_that_no_format_has(self):
-        for arguments, listed in ((("convert", GRID), r"\.igs, .*\.stp"), (("convert", GRID, "--to", "iges"), r"\.igs"),
-                                  (("convert", GRID, RING), r"\.igs"), (("relax", PATH), r"\.txt"),
-                                  (("mesh", GRID), r"\.inp"), (("view", GRID), r"\.png"),
-                                  (("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0"), r"\.txt")):
+        for arguments, listed in (
+            (("convert", GRID), r"\.igs, .*\.stp"),
+            (("convert", GRID, "--to", "iges"), r"\.igs"),
+            (("convert", GRID, RING), r"\.igs"),
+            (("relax", PATH), r"\.txt"),
+            (("mesh", GRID), r"\.inp"),
+            (("view", GRID), r"\.png"),
+            (("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0"), r"\.txt"),
+        ):
             message = self.fails(2, *arguments, "-o", self.folder / "x.sat")
             self.assertRegex(message, f"no format has the extension '.sat'.*{listed}")
             self.assertEqual(self.names(), [])
-        self.assertIn("cannot write iges", self.fails(2, "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0",
-                                                         "-o", self.folder / "x.igs"))
+        self.assertIn(
+            "cannot write iges",
+            self.fails(
+                2, "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0", "-o", self.folder / "x.igs"
+            ),
+        )
         # A folder may be called so.
         self.succeeds("convert", GRID, "--to", "iges", "-o", f"{self.folder}/v1.5/")
         self.succeeds("convert", RING, "--to", "iges", "-o", self.folder / "v1.5")
@@ -77,8 +98,9 @@ class Places(Case):
         report = self.folder / "report.json"
         self.succeeds("mesh", GRID, "--size", "0.4", "--to", "cdb", "-o", self.out / "x.cdb", "--report", report)
         self.assertEqual(list(files_below(self.out)), ["x.cdb"])
-        again = self.succeeds("mesh", GRID, "--size", "0.4", "--to", "cdb", "-o", self.out / "x.cdb", "--report", report,
-                              "--resume")
+        again = self.succeeds(
+            "mesh", GRID, "--size", "0.4", "--to", "cdb", "-o", self.out / "x.cdb", "--report", report, "--resume"
+        )
         self.assertIn("1 were up to date", again.stderr)
         refused = run("mesh", GRID, "--size", "0.4", "--to", "mac", "-o", self.out / "y.mac")
         self.assertEqual(refused.returncode, 1)
@@ -141,11 +163,13 @@ class Units(Case):
             flag, other = self.iges("--units", unit)
             self.assertEqual(flag, wanted)
             self.assertEqual(other[:head], mm[:head])
-            for a, b in zip(other[head:head + 3 * count], mm[head:head + 3 * count]):
+            for a, b in zip(other[head : head + 3 * count], mm[head : head + 3 * count]):
                 self.assertAlmostEqual(a, b * scale, delta=4e-16 * abs(b * scale))
 
     def test_tables(self):
-        length = lambda text: float(next(line for line in text.splitlines() if "together" in line).split()[2].rstrip(","))
+        length = lambda text: float(
+            next(line for line in text.splitlines() if "together" in line).split()[2].rstrip(",")
+        )
         mm = length(self.succeeds("info", RING).stdout)
         self.assertAlmostEqual(length(self.succeeds("info", RING, "--units", "cm").stdout), mm / 10, places=5)
 
@@ -160,7 +184,9 @@ class Collisions(Case):
         for name in ("a/plain.txt", "b/plain.txt"):
             (self.folder / name).parent.mkdir()
             shutil.copy(GRID, self.folder / name)
-        self.refused("would both write", "convert", self.folder / "a/plain.txt", self.folder / "b/plain.txt", "-o", self.out)
+        self.refused(
+            "would both write", "convert", self.folder / "a/plain.txt", self.folder / "b/plain.txt", "-o", self.out
+        )
         # The same folder under two names is one place.
         os.symlink(self.folder / "a", self.folder / "c")
         self.refused("would both write", "convert", self.folder / "a/plain.txt", self.folder / "c/plain.txt")
@@ -199,8 +225,13 @@ class Trouble(Case):
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 
-        done = subprocess.run([PROGRAM, "convert", GRID, "--to", "iges", "-o", self.folder / "x.igs"], preexec_fn=limit,
-                              env=environment(), capture_output=True, text=True)
+        done = subprocess.run(
+            [PROGRAM, "convert", GRID, "--to", "iges", "-o", self.folder / "x.igs"],
+            preexec_fn=limit,
+            env=environment(),
+            capture_output=True,
+            text=True,
+        )
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("x.igs: error: cannot write: File too large", done.stderr)
         self.assertEqual(files_below(self.folder), {})
@@ -231,13 +262,23 @@ class Trouble(Case):
         source.chmod(0o644)
         closed = self.folder / "closed"
         closed.mkdir(mode=0o500)
-        done = subprocess.run([program, "convert", source, "-o", closed / "x.igs"], env=environment(), capture_output=True,
-                              text=True, **options)
+        done = subprocess.run(
+            [program, "convert", source, "-o", closed / "x.igs"],
+            env=environment(),
+            capture_output=True,
+            text=True,
+            **options,
+        )
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("x.igs: error: cannot write: Permission denied", done.stderr)
         closed.chmod(0o000)
-        done = subprocess.run([program, "convert", closed, source, "--to", "iges", "-o", "-"], env=environment(),
-                              capture_output=True, text=True, **options)
+        done = subprocess.run(
+            [program, "convert", closed, source, "--to", "iges", "-o", "-"],
+            env=environment(),
+            capture_output=True,
+            text=True,
+            **options,
+        )
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(files_below(self.folder).keys() - {"selvage"}, {"grid.txt"})
 
@@ -251,23 +292,45 @@ class Trouble(Case):
         """Whatever was to be read there: full, or closed, it is an error, and no file gets the closed one's number."""
         edit = ("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0.4,0.5,0.2", "-o", "-")
         report = ("convert", GRID, "-o", self.folder / "x.igs", "--report", "-")
-        for arguments in (("info", GRID), ("info", GRID, "--json"), ("formats",), ("--version",), ("--help",),
-                          ("convert", "--help"), ("check", GRID), ("diff", GRID, GRID), ("diff", GRID, PATH),
-                          ("diff", GRID, GRID, "--json"), ("convert", GRID, "--to", "iges", "-o", "-"), report, edit,
-                          ("roundtrip", GRID, "--to", "iges")):
+        for arguments in (
+            ("info", GRID),
+            ("info", GRID, "--json"),
+            ("formats",),
+            ("--version",),
+            ("--help",),
+            ("convert", "--help"),
+            ("check", GRID),
+            ("diff", GRID, GRID),
+            ("diff", GRID, PATH),
+            ("diff", GRID, GRID, "--json"),
+            ("convert", GRID, "--to", "iges", "-o", "-"),
+            report,
+            edit,
+            ("roundtrip", GRID, "--to", "iges"),
+        ):
             with self.subTest(arguments):
                 with open("/dev/full", "w") as full:
-                    done = subprocess.run([PROGRAM, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE,
-                                          env=environment(), text=True)
+                    done = subprocess.run(
+                        [PROGRAM, *map(str, arguments)],
+                        stdout=full,
+                        stderr=subprocess.PIPE,
+                        env=environment(),
+                        text=True,
+                    )
                 self.assertEqual(done.returncode, 1, done.stderr)
                 self.assertIn("No space left on device", done.stderr)
-                closed = subprocess.run(["sh", "-c", 'exec "$@" >&-', "sh", PROGRAM, *map(str, arguments)],
-                                        stderr=subprocess.PIPE, env=environment(), text=True)
+                closed = subprocess.run(
+                    ["sh", "-c", 'exec "$@" >&-', "sh", PROGRAM, *map(str, arguments)],
+                    stderr=subprocess.PIPE,
+                    env=environment(),
+                    text=True,
+                )
                 self.assertEqual(closed.returncode, 1, closed.stderr)
                 self.assertIn("Bad file descriptor", closed.stderr)
         self.succeeds("convert", GRID, "-o", self.folder / "y.igs")
-        self.assertEqual((self.folder / "x.igs").read_bytes().replace(b"x.igs", b"y.igs"),
-                         (self.folder / "y.igs").read_bytes())
+        self.assertEqual(
+            (self.folder / "x.igs").read_bytes().replace(b"x.igs", b"y.igs"), (self.folder / "y.igs").read_bytes()
+        )
 
     def test_what_killed_runs_left_is_removed(self):
         self.out.mkdir()

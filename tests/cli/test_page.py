@@ -20,7 +20,15 @@ from page import Page
 from program import HAS_PAGES, NO_PAGES, PROGRAM, SAMPLES, Case, environment, files_below
 
 # Round, flat, twisted, looped, braided; paths, grids, a ring.
-CLOTHS = ["plain4_path.txt", "plain4_grid.txt", "ring.txt", "weave_tow.txt", "jersey.txt", "braid.txt", "ply2_plain.txt"]
+CLOTHS = [
+    "plain4_path.txt",
+    "plain4_grid.txt",
+    "ring.txt",
+    "weave_tow.txt",
+    "jersey.txt",
+    "braid.txt",
+    "ply2_plain.txt",
+]
 ROUND = ["jersey.txt", "weave_twill22.txt", "braid_diamond.txt", "warpknit_tricot.txt"]
 
 HEAD = "fabric 1\nunits mm\ntolerance 1e-4\nthread rod\n  diameter 0.4\nend\n"
@@ -37,9 +45,9 @@ def distances(points, line):
     size = np.maximum((way**2).sum(axis=1), 1e-300)
     best = np.empty(len(points))
     for first in range(0, len(points), 512):
-        p = points[first:first + 512, None]
+        p = points[first : first + 512, None]
         share = np.clip(((p - a) * way).sum(axis=2) / size, 0, 1)
-        best[first:first + 512] = np.sqrt((((a + share[..., None] * way) - p)**2).sum(axis=2)).min(axis=1)
+        best[first : first + 512] = np.sqrt((((a + share[..., None] * way) - p) ** 2).sum(axis=2)).min(axis=1)
     return best
 
 
@@ -88,10 +96,12 @@ class Yarns(Base):
                         d, c = tube.points[1:, :-1], tube.points[1:, 1:]
                         six += (a * np.cross(b, c)).sum() + (a * np.cross(c, d)).sum()
                         columns = tube.points.shape[1]
-                        starts = tube.ends[:columns + 1] if len(tube.ends) else tube.ends
-                        if len(tube.ends) == columns + 1 and not np.allclose(tube.ends[:columns], tube.points[0], atol=1e-9):
+                        starts = tube.ends[: columns + 1] if len(tube.ends) else tube.ends
+                        if len(tube.ends) == columns + 1 and not np.allclose(
+                            tube.ends[:columns], tube.points[0], atol=1e-9
+                        ):
                             starts = tube.ends[:0]
-                        for rim, sign in ((starts, -1), (tube.ends[len(starts):], 1)):
+                        for rim, sign in ((starts, -1), (tube.ends[len(starts) :], 1)):
                             if len(rim):
                                 six += sign * (rim[-1] * np.cross(rim[:-2], rim[1:-1])).sum()
                     self.assertAlmostEqual(six / 6 / yarn["volume"], 1, delta=0.02, msg=yarn["name"])
@@ -99,7 +109,7 @@ class Yarns(Base):
     def test_round_yarns_keep_their_radius_at_every_level(self):
         for name in ROUND:
             page, lines = self.page(SAMPLES / name), self.lines(SAMPLES / name)
-            for k, yarn in list(enumerate(page.names))[::max(1, len(page.names) // 3)]:
+            for k, yarn in list(enumerate(page.names))[:: max(1, len(page.names) // 3)]:
                 line = lines[yarn]
                 radius, shape = line[0, 3], page.shape(k)
                 self.assertLess(np.ptp(line[:, 3]), 3e-3 * radius)
@@ -113,9 +123,13 @@ class Yarns(Base):
                         # Middles of edges along the yarn and round it are within the chord.
                         for tube in page.tubes(k, level):
                             p = tube.points
-                            middles = np.vstack([((p[1:] + p[:-1]) / 2).reshape(-1, 3), ((p[:, 1:] + p[:, :-1]) / 2).reshape(-1, 3)])[::7]
+                            middles = np.vstack(
+                                [((p[1:] + p[:-1]) / 2).reshape(-1, 3), ((p[:, 1:] + p[:, :-1]) / 2).reshape(-1, 3)]
+                            )[::7]
                             depth = radius - distances(middles, line[:, :3])
-                            self.assertLess(depth.max(), 1.3 * chord + 2 * shape["step"] + 0.006 * radius, (name, yarn, level))
+                            self.assertLess(
+                                depth.max(), 1.3 * chord + 2 * shape["step"] + 0.006 * radius, (name, yarn, level)
+                            )
                             out = tube.points - tube.points.mean(axis=1, keepdims=True)
                             self.assertGreater((out * tube.normals).sum(axis=2).min(), 0)
                     else:
@@ -125,7 +139,9 @@ class Yarns(Base):
                                 self.assertLess(np.abs(np.linalg.norm(vector, axis=1) - radius).max(), 0.02 * radius)
                         # The other way: no point of the line is farther than the chord from the ribbon.
                         whole = np.vstack([points for points, _, _ in page.ribbons(k, level)])
-                        self.assertLess(distances(line[:, :3], whole).max(), 1.05 * chord + 1e-3 * radius, (name, yarn, level))
+                        self.assertLess(
+                            distances(line[:, :3], whole).max(), 1.05 * chord + 1e-3 * radius, (name, yarn, level)
+                        )
 
     def test_levels_end_where_the_yarn_does(self):
         page = self.page(SAMPLES / "jersey.txt")
@@ -148,7 +164,7 @@ class Yarns(Base):
                 # To the bit: both are multiples of one step.
                 self.assertTrue(np.array_equal(one.points[-1], next_one.points[0]))
             for tube, (low, high) in zip(tubes, page.shape(0)["boxes"]):
-                flat = (tube.points.reshape(-1, 3) - page.centre - page.motions[0][:, 3])
+                flat = tube.points.reshape(-1, 3) - page.centre - page.motions[0][:, 3]
                 self.assertGreater((flat - low).min(), -0.03 * 0.4)
                 self.assertLess((flat - high).max(), 0.03 * 0.4)
 
@@ -177,23 +193,27 @@ class Yarns(Base):
             self.assertLess(distances(points, lines[yarn][:, :3]).max(), 1e-3, yarn)
 
     def test_contacts_are_those_of_check(self):
-        cross = HEAD + rod("a", ["-2 0 0", "0 0 0", "2 0 0"]) + rod("b", ["0 -2 0.35", "0 0 0.35", "0 2 0.35"]) + \
-            rod("c", ["-1 -2 -0.41", "-1 0 -0.41", "-1 2 -0.41"])
+        cross = (
+            HEAD
+            + rod("a", ["-2 0 0", "0 0 0", "2 0 0"])
+            + rod("b", ["0 -2 0.35", "0 0 0.35", "0 2 0.35"])
+            + rod("c", ["-1 -2 -0.41", "-1 0 -0.41", "-1 2 -0.41"])
+        )
         source = self.source(cross)
         page = self.page(source, "--reach", 0.05)
         contacts = page.data["contacts"]
         self.assertEqual((contacts["overlap_count"], contacts["near_count"]), (1, 1))
-        (a, b, gap, x, y, z), = contacts["overlaps"]
+        ((a, b, gap, x, y, z),) = contacts["overlaps"]
         self.assertEqual({page.names[a], page.names[b]}, {"a", "b"})
         self.assertAlmostEqual(gap, -0.05, delta=1e-3)
         self.assertLess(np.abs(np.array([x, y, z - 0.175])).max(), 1e-3)
-        (a, b, gap, x, y, z), = contacts["near"]
+        ((a, b, gap, x, y, z),) = contacts["near"]
         self.assertEqual({page.names[a], page.names[b]}, {"a", "c"})
         self.assertAlmostEqual(gap, 0.01, delta=1e-4)
         self.assertLess(np.abs(np.array([x + 1, y, z + 0.205])).max(), 1e-3)
         report = self.folder / "r.json"
         self.assertIn("overlap", self.fails(3, "check", source, "--report", report))
-        overlap, = json.loads(report.read_text())["inputs"][0]["overlaps"]
+        (overlap,) = json.loads(report.read_text())["inputs"][0]["overlaps"]
         self.assertAlmostEqual(overlap["depth"], -contacts["overlaps"][0][2], delta=1e-9)
         page = self.page(source, "--contacts", "no")
         self.assertNotIn("contacts", page.data)
@@ -212,8 +232,12 @@ class Text(Base):
 
     def test_names_are_no_html(self):
         name = self.HOSTILE.replace('"', "'")
-        source = self.source(HEAD.replace("units", f'title "{name}"\nunits') + rod(f'"{name}"', ["0 0 0", "1 0 0", "2 0 0.5"]))
-        page, plain = self.page(source), self.page(self.source(HEAD + rod("a", ["0 0 0", "1 0 0", "2 0 0.5"]), "plain.txt"))
+        source = self.source(
+            HEAD.replace("units", f'title "{name}"\nunits') + rod(f'"{name}"', ["0 0 0", "1 0 0", "2 0 0.5"])
+        )
+        page, plain = self.page(source), self.page(
+            self.source(HEAD + rod("a", ["0 0 0", "1 0 0", "2 0 0.5"]), "plain.txt")
+        )
         self.assertEqual(Page(self.path).names, ["a"])
         self.assertEqual(page.names, [name])
         self.assertEqual(page.data["title"], name)
@@ -222,7 +246,12 @@ class Text(Base):
         self.assertNotIn("alert(1)</script>", page.text)
         # No text of the page's own is made HTML of.
         for way in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write"):
-            self.assertNotIn(way, "".join(path.read_text() for path in (pathlib.Path(__file__).parents[2] / "src/view/page").glob("*.js")))
+            self.assertNotIn(
+                way,
+                "".join(
+                    path.read_text() for path in (pathlib.Path(__file__).parents[2] / "src/view/page").glob("*.js")
+                ),
+            )
 
     def test_nothing_is_asked_of_a_network(self):
         page = self.page(SAMPLES / "plain4_path.txt")
@@ -230,8 +259,12 @@ class Text(Base):
         self.assertIn("default-src 'none'", policy)
         for tag, attributes in page.elements.tags:
             for key in ("src", "href", "action", "data", "poster", "srcset"):
-                self.assertTrue(attributes.get(key, "#").startswith(("#", "data:")), (tag, attributes.get(key, "")[:60]))
-        own = "".join(path.read_text() for path in (pathlib.Path(__file__).parents[2] / "src/view/page").glob("*.[jch]*"))
+                self.assertTrue(
+                    attributes.get(key, "#").startswith(("#", "data:")), (tag, attributes.get(key, "")[:60])
+                )
+        own = "".join(
+            path.read_text() for path in (pathlib.Path(__file__).parents[2] / "src/view/page").glob("*.[jch]*")
+        )
         for word in ("fetch(", "XMLHttpRequest", "WebSocket", "@import", "url(", "sendBeacon", "EventSource"):
             self.assertNotIn(word, own)
 
@@ -262,11 +295,15 @@ class Text(Base):
 class Files(Case):
     def test_names_of_outputs(self):
         source = SAMPLES / "ring.txt"
-        self.assertIn("names one file", self.fails(2, "view", source, SAMPLES / "jersey.txt", "-o", self.folder / "x.html"))
+        self.assertIn(
+            "names one file", self.fails(2, "view", source, SAMPLES / "jersey.txt", "-o", self.folder / "x.html")
+        )
         self.assertIn(".png, .html", self.fails(2, "view", source, "-o", self.folder / "x.htm"))
         done = subprocess.run([PROGRAM, "view", source, "-o", "-"], capture_output=True, env=environment())
         self.assertEqual(done.stdout[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertIn("no yarn to show", self.fails(1, "view", SAMPLES / "back_piece.txt", "-o", self.folder / "x.html"))
+        self.assertIn(
+            "no yarn to show", self.fails(1, "view", SAMPLES / "back_piece.txt", "-o", self.folder / "x.html")
+        )
         self.assertEqual(files_below(self.folder), {})
 
     def test_without_the_library(self):
@@ -274,16 +311,24 @@ class Files(Case):
         alone = self.folder / "bin"
         alone.mkdir()
         shutil.copy(PROGRAM, alone / "selvage")
-        done = subprocess.run([alone / "selvage", "view", SAMPLES / "ring.txt", "-o", self.out / "x.html"], capture_output=True, text=True,
-                              env=environment())
+        done = subprocess.run(
+            [alone / "selvage", "view", SAMPLES / "ring.txt", "-o", self.out / "x.html"],
+            capture_output=True,
+            text=True,
+            env=environment(),
+        )
         self.assertEqual(done.returncode, 1)
         for word in ("three.js", "three.module.min.js", "scripts/setup", ".png"):
             self.assertIn(word, done.stderr)
         self.assertEqual(files_below(self.out) if self.out.exists() else {}, {})
         # Another file of that name is none.
         (alone / "three.module.min.js").write_text("export default 1")
-        done = subprocess.run([alone / "selvage", "view", SAMPLES / "ring.txt", "-o", self.out / "x.html"], capture_output=True, text=True,
-                              env=environment())
+        done = subprocess.run(
+            [alone / "selvage", "view", SAMPLES / "ring.txt", "-o", self.out / "x.html"],
+            capture_output=True,
+            text=True,
+            env=environment(),
+        )
         self.assertEqual(done.returncode, 1)
         self.assertIn("not the three.js", done.stderr)
 
@@ -305,8 +350,14 @@ class Meshes(Base):
         points, triangles, region_of = page.skin()
         cells = read.cells_dict["tetra"]
         corners = read.points[cells]
-        volumes = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
-                            corners[:, 3] - corners[:, 0]) / 6
+        volumes = (
+            np.einsum(
+                "ij,ij->i",
+                np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+                corners[:, 3] - corners[:, 0],
+            )
+            / 6
+        )
         yarn_of = read.cell_data_dict["yarn"]["tetra"]
         for region, facts in enumerate(page.data["skin"]["regions"]):
             own = points[triangles[region_of == region]]
@@ -319,7 +370,9 @@ class Meshes(Base):
     def test_a_mesh_of_our_own(self):
         source = self.mesh()
         page, read = self.page(source), meshio.read(source)
-        self.assertEqual([region["name"] for region in page.data["skin"]["regions"]], ["warp1", "warp2", "weft1", "weft2"])
+        self.assertEqual(
+            [region["name"] for region in page.data["skin"]["regions"]], ["warp1", "warp2", "weft1", "weft2"]
+        )
         self.assertEqual(page.data["skin"]["nodes"], len(read.points))
         self.assert_skin_of(page, read)
         angles = page.data["skin"]["histograms"][0]
@@ -332,7 +385,10 @@ class Meshes(Base):
 
     def test_other_forms_of_vtu(self):
         first = meshio.read(self.mesh())
-        first.point_data = {"u": np.column_stack([first.points[:, 0], first.points[:, 1]**2, first.points[:, 2]]), "t": first.points[:, 2]}
+        first.point_data = {
+            "u": np.column_stack([first.points[:, 0], first.points[:, 1] ** 2, first.points[:, 2]]),
+            "t": first.points[:, 2],
+        }
         for form in ({"binary": False}, {"binary": True, "compression": None}, {"binary": True, "compression": "zlib"}):
             path = self.folder / "form.vtu"
             meshio.vtu.write(path, first, **form)
@@ -340,43 +396,64 @@ class Meshes(Base):
             self.assert_skin_of(page, first)
             points, _, _ = page.skin()
             self.assertLess(np.abs(page.field("t")[:, 0] - points[:, 2]).max(), 1e-5)
-            self.assertLess(np.abs(page.field("u")[:, 1] - points[:, 1]**2).max(), 1e-5)
+            self.assertLess(np.abs(page.field("u")[:, 1] - points[:, 1] ** 2).max(), 1e-5)
 
     def test_elements_of_every_shape(self):
         cube = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
         # VTK's wedge: its first triangle is seen counter-clockwise from outside.
-        for kind, cell, volume in (("tetra", [0, 1, 3, 4], 1 / 6), ("pyramid", [0, 1, 2, 3, 4], 1 / 3), ("wedge", [0, 3, 1, 4, 7, 5], 1 / 2),
-                                   ("hexahedron", list(range(8)), 1), ("voxel", [0, 1, 3, 2, 4, 5, 7, 6], 1)):
+        for kind, cell, volume in (
+            ("tetra", [0, 1, 3, 4], 1 / 6),
+            ("pyramid", [0, 1, 2, 3, 4], 1 / 3),
+            ("wedge", [0, 3, 1, 4, 7, 5], 1 / 2),
+            ("hexahedron", list(range(8)), 1),
+            ("voxel", [0, 1, 3, 2, 4, 5, 7, 6], 1),
+        ):
             path = self.folder / f"{kind}.vtu"
             types = {"voxel": 11, "hexahedron": 12, "wedge": 13, "pyramid": 14, "tetra": 10}
             numbers = lambda values: " ".join(map(str, np.ravel(values)))
-            path.write_text('<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece><Points><DataArray type="Float64" NumberOfComponents="3" '
-                            f'format="ascii">{numbers(cube)}</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">'
-                            f'{numbers(cell)}</DataArray><DataArray type="Int64" Name="offsets" format="ascii">{len(cell)}</DataArray>'
-                            f'<DataArray type="UInt8" Name="types" format="ascii">{types[kind]}</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>')
+            path.write_text(
+                '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece><Points><DataArray type="Float64" NumberOfComponents="3" '
+                f'format="ascii">{numbers(cube)}</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">'
+                f'{numbers(cell)}</DataArray><DataArray type="Int64" Name="offsets" format="ascii">{len(cell)}</DataArray>'
+                f'<DataArray type="UInt8" Name="types" format="ascii">{types[kind]}</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>'
+            )
             points, triangles, _ = self.page(path).skin()
             own = points[triangles]
             # Outward, and closed: the divergence theorem, from two origins.
             for origin in (0, 10):
                 p = own - origin
-                self.assertAlmostEqual(np.einsum("ij,ij->", p[:, 0], np.cross(p[:, 1], p[:, 2])) / 6, volume, delta=1e-5, msg=kind)
+                self.assertAlmostEqual(
+                    np.einsum("ij,ij->", p[:, 0], np.cross(p[:, 1], p[:, 2])) / 6, volume, delta=1e-5, msg=kind
+                )
 
     def test_appended_data(self):
         """As VTK appends them: a head and bytes of each array, behind an underscore."""
         points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], "<f8")
-        arrays = [("Points", points, "Float64", 3), ("connectivity", np.array([0, 1, 2, 3, 1, 2, 3, 4], "<i4"), "Int32", 1),
-                  ("offsets", np.array([4, 8], "<i4"), "Int32", 1), ("types", np.array([10, 10], "u1"), "UInt8", 1),
-                  ("material", np.array([7, 9], "<i4"), "Int32", 1)]
+        arrays = [
+            ("Points", points, "Float64", 3),
+            ("connectivity", np.array([0, 1, 2, 3, 1, 2, 3, 4], "<i4"), "Int32", 1),
+            ("offsets", np.array([4, 8], "<i4"), "Int32", 1),
+            ("types", np.array([10, 10], "u1"), "UInt8", 1),
+            ("material", np.array([7, 9], "<i4"), "Int32", 1),
+        ]
         for encoding in ("raw", "base64"):
             blob, tags = b"", {}
             for name, values, kind, components in arrays:
-                tags[name] = f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="appended" offset="{len(blob)}"/>'
+                tags[
+                    name
+                ] = f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="appended" offset="{len(blob)}"/>'
                 data = len(values.tobytes()).to_bytes(4, "little") + values.tobytes()
                 blob += data if encoding == "raw" else base64.b64encode(data)
-            text = ('<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n<UnstructuredGrid>\n'
+            text = (
+                (
+                    '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n<UnstructuredGrid>\n'
                     f'<Piece NumberOfPoints="5" NumberOfCells="2">\n<Points>{tags["Points"]}</Points>\n'
                     f'<Cells>{tags["connectivity"]}{tags["offsets"]}{tags["types"]}</Cells>\n<CellData>{tags["material"]}</CellData>\n</Piece>\n'
-                    f'</UnstructuredGrid>\n<AppendedData encoding="{encoding}">\n_').encode() + blob + b"\n</AppendedData>\n</VTKFile>\n"
+                    f'</UnstructuredGrid>\n<AppendedData encoding="{encoding}">\n_'
+                ).encode()
+                + blob
+                + b"\n</AppendedData>\n</VTKFile>\n"
+            )
             path = self.folder / "appended.vtu"
             path.write_bytes(text)
             page = self.page(path)
@@ -384,16 +461,22 @@ class Meshes(Base):
             self.assertEqual(page.data["skin"]["triangle_count"], 8)
 
     def test_faults_are_told_at_their_place(self):
-        text = ('<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n<UnstructuredGrid><Piece>\n<Points>\n'
-                '<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>\n<Cells>\n'
-                '<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>\n'
-                '<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>\n<DataArray type="UInt8" Name="types" format="ascii">10</DataArray>\n'
-                '</Cells></Piece></UnstructuredGrid></VTKFile>\n')
+        text = (
+            '<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n<UnstructuredGrid><Piece>\n<Points>\n'
+            '<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>\n<Cells>\n'
+            '<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>\n'
+            '<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>\n<DataArray type="UInt8" Name="types" format="ascii">10</DataArray>\n'
+            "</Cells></Piece></UnstructuredGrid></VTKFile>\n"
+        )
         self.page(self.source(text, "good.vtu"))
-        for old, new, line, words in (("0 1 2 3", "0 1 2 4", 6, "no point 4"), (">4<", ">9<", 7, "offset of cell 0"),
-                                      ("0 0 0 1 0 0", "0 0 x 1 0 0", 4, "'x' is not"), (">10<", ">3<", 1, "no cell"),
-                                      ('Name="offsets" format="ascii">4', 'Name="offsets" format="binary">AA', 7, "data end"),
-                                      ('Grid" version', 'Grid" compressor="vtkLZ4DataCompressor" version', 1, "zlib")):
+        for old, new, line, words in (
+            ("0 1 2 3", "0 1 2 4", 6, "no point 4"),
+            (">4<", ">9<", 7, "offset of cell 0"),
+            ("0 0 0 1 0 0", "0 0 x 1 0 0", 4, "'x' is not"),
+            (">10<", ">3<", 1, "no cell"),
+            ('Name="offsets" format="ascii">4', 'Name="offsets" format="binary">AA', 7, "data end"),
+            ('Grid" version', 'Grid" compressor="vtkLZ4DataCompressor" version', 1, "zlib"),
+        ):
             bad = self.source(text.replace(old, new), "bad.vtu")
             message = self.fails(1, "view", bad, "-o", self.folder / "bad.html")
             self.assertRegex(message, rf"bad\.vtu:{line}:\d+: error: .*{words}")
@@ -403,16 +486,40 @@ class Meshes(Base):
         deck = self.folder / "bar.inp"
         nodes = [(x, y, z) for x in (0, 1, 2) for z in (0, 1) for y in (0, 1)]
         number = {node: k + 1 for k, node in enumerate(nodes)}
-        cube = lambda x: [number[n] for n in ((x, 0, 0), (x + 1, 0, 0), (x + 1, 1, 0), (x, 1, 0), (x, 0, 1), (x + 1, 0, 1), (x + 1, 1, 1), (x, 1, 1))]
-        deck.write_text("*NODE, NSET=ALL\n" + "".join(f"{k}, {x}, {y}, {z}\n" for (x, y, z), k in number.items()) +
-                        "*ELEMENT, TYPE=C3D8, ELSET=ONE\n" + f"1, {', '.join(map(str, cube(0)))}\n" +
-                        "*ELEMENT, TYPE=C3D8, ELSET=TWO\n" + f"2, {', '.join(map(str, cube(1)))}\n" +
-                        "*MATERIAL, NAME=GLASS\n*ELASTIC\n1000, 0\n*MATERIAL, NAME=RESIN\n*ELASTIC\n500, 0\n"
-                        "*SOLID SECTION, ELSET=ONE, MATERIAL=GLASS\n*SOLID SECTION, ELSET=TWO, MATERIAL=RESIN\n"
-                        "*STEP\n*STATIC\n*BOUNDARY\n" + "".join(f"{k}, 1, 3, 0\n" for (x, _, _), k in number.items() if x == 0) +
-                        "".join(f"{k}, 1, 1, 0.03\n" for (x, _, _), k in number.items() if x == 2) +
-                        "*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n")
-        subprocess.run(["ccx", "-i", "bar"], cwd=self.folder, check=True, capture_output=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+        cube = lambda x: [
+            number[n]
+            for n in (
+                (x, 0, 0),
+                (x + 1, 0, 0),
+                (x + 1, 1, 0),
+                (x, 1, 0),
+                (x, 0, 1),
+                (x + 1, 0, 1),
+                (x + 1, 1, 1),
+                (x, 1, 1),
+            )
+        ]
+        deck.write_text(
+            "*NODE, NSET=ALL\n"
+            + "".join(f"{k}, {x}, {y}, {z}\n" for (x, y, z), k in number.items())
+            + "*ELEMENT, TYPE=C3D8, ELSET=ONE\n"
+            + f"1, {', '.join(map(str, cube(0)))}\n"
+            + "*ELEMENT, TYPE=C3D8, ELSET=TWO\n"
+            + f"2, {', '.join(map(str, cube(1)))}\n"
+            + "*MATERIAL, NAME=GLASS\n*ELASTIC\n1000, 0\n*MATERIAL, NAME=RESIN\n*ELASTIC\n500, 0\n"
+            "*SOLID SECTION, ELSET=ONE, MATERIAL=GLASS\n*SOLID SECTION, ELSET=TWO, MATERIAL=RESIN\n"
+            "*STEP\n*STATIC\n*BOUNDARY\n"
+            + "".join(f"{k}, 1, 3, 0\n" for (x, _, _), k in number.items() if x == 0)
+            + "".join(f"{k}, 1, 1, 0.03\n" for (x, _, _), k in number.items() if x == 2)
+            + "*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n"
+        )
+        subprocess.run(
+            ["ccx", "-i", "bar"],
+            cwd=self.folder,
+            check=True,
+            capture_output=True,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+        )
         page = self.page(self.folder / "bar.frd")
         self.assertEqual([region["name"] for region in page.data["skin"]["regions"]], ["ONE", "TWO"])
         points, triangles, _ = page.skin()
@@ -426,19 +533,29 @@ class Meshes(Base):
         self.assertLess(np.abs(stress[:, 1:]).max(), 1e-3)
 
     def test_faults_of_frd(self):
-        text = ("    1C\n    1UUSER\n    2C                             4                                     1\n" +
-                "".join(f" -1{k:10d}{x:12.5E}{y:12.5E}{z:12.5E}\n" for k, (x, y, z) in enumerate([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], 1)) +
-                " -3\n    3C                             1                                     1\n -1         1    3    0    1\n"
-                " -2         1         2         3         4\n -3\n 9999\n")
+        text = (
+            "    1C\n    1UUSER\n    2C                             4                                     1\n"
+            + "".join(
+                f" -1{k:10d}{x:12.5E}{y:12.5E}{z:12.5E}\n"
+                for k, (x, y, z) in enumerate([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], 1)
+            )
+            + " -3\n    3C                             1                                     1\n -1         1    3    0    1\n"
+            " -2         1         2         3         4\n -3\n 9999\n"
+        )
         page = self.page(self.source(text, "good.frd"))
         self.assertEqual([region["name"] for region in page.data["skin"]["regions"]], ["material 1"])
         self.assertEqual(page.data["skin"]["triangle_count"], 4)
-        for old, new, line, words in (("3         4\n -3", "3         5\n -3", 11, "no node '5'"), ("1    3    0", "1   99    0", 10, "type"),
-                                      ("1.00000E+00 0.00000E+00 0.00000E+00", "1.0x000E+00 0.00000E+00 0.00000E+00", 5, "finite"),
-                                      ("   4                                     1", "   4                                     2", 3, "binary")):
+        for old, new, line, words in (
+            ("3         4\n -3", "3         5\n -3", 11, "no node '5'"),
+            ("1    3    0", "1   99    0", 10, "type"),
+            ("1.00000E+00 0.00000E+00 0.00000E+00", "1.0x000E+00 0.00000E+00 0.00000E+00", 5, "finite"),
+            ("   4                                     1", "   4                                     2", 3, "binary"),
+        ):
             self.assertIn(old, text)
             bad = self.source(text.replace(old, new, 1), "bad.frd")
-            self.assertRegex(self.fails(1, "view", bad, "-o", self.folder / "bad.html"), rf"bad\.frd:{line}:\d+: error: .*{words}")
+            self.assertRegex(
+                self.fails(1, "view", bad, "-o", self.folder / "bad.html"), rf"bad\.frd:{line}:\d+: error: .*{words}"
+            )
 
 
 if __name__ == "__main__":

@@ -13,16 +13,20 @@ FILAMENTS = [f"{ply}.f{k}" for ply in PLIES for k in range(1, 8)]
 
 def step_tree(text):
     """Product name of each part: the name of the assembly that it stands in."""
-    entities = {number: re.sub(r"\n\s*", "", body)
-                for number, body in re.findall(r"^#(\d+) = (.*?);$", text, re.MULTILINE | re.DOTALL)}
+    entities = {
+        number: re.sub(r"\n\s*", "", body)
+        for number, body in re.findall(r"^#(\d+) = (.*?);$", text, re.MULTILINE | re.DOTALL)
+    }
 
     def product(definition):
         formation = re.match(r"PRODUCT_DEFINITION\('[^']*','[^']*',#(\d+)", entities[definition])[1]
         which = re.match(r"PRODUCT_DEFINITION_FORMATION\('[^']*','[^']*',#(\d+)", entities[formation])[1]
         return re.match(r"PRODUCT\(\s*'([^']*)'", entities[which])[1]
 
-    uses = (re.match(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','[^']*','[^']*',#(\d+),#(\d+)", body)
-            for body in entities.values())
+    uses = (
+        re.match(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','[^']*','[^']*',#(\d+),#(\d+)", body)
+        for body in entities.values()
+    )
     return {product(use[2]): product(use[1]) for use in uses if use}
 
 
@@ -42,8 +46,10 @@ def iges_groups(text):
     for pointer, fields in groups.items():
         name = value[int(fields[-1])]  # the last pointer is the property with the name
         names[pointer] = re.match(r"\d+H(.*)", ",".join(name[2:]))[1]
-    return {names[pointer]: [names[int(m)] for m in fields[2:2 + int(fields[1])] if int(m) in groups]
-            for pointer, fields in groups.items()}
+    return {
+        names[pointer]: [names[int(m)] for m in fields[2 : 2 + int(fields[1])] if int(m) in groups]
+        for pointer, fields in groups.items()
+    }
 
 
 class Parts(Case):
@@ -51,7 +57,11 @@ class Parts(Case):
         report = self.folder / "report.json"
         self.succeeds("convert", CABLED, "--detail", detail, "-o", self.out, "--report", report, "--quiet")
         names = [yarn["name"] for yarn in json.loads(report.read_text())["inputs"][0]["yarns"]]
-        return names, step_tree((self.out / "cabled.stp").read_text()), iges_groups((self.out / "cabled.igs").read_text())
+        return (
+            names,
+            step_tree((self.out / "cabled.stp").read_text()),
+            iges_groups((self.out / "cabled.igs").read_text()),
+        )
 
     def test_filaments_stand_in_a_group_of_their_yarn(self):
         names, step, iges = self.converted("filaments")
@@ -86,8 +96,18 @@ class Parts(Case):
     def test_resume_does_a_changed_detail_again(self):
         report = self.folder / "report.json"
         for detail in ("yarn", "plies"):
-            self.succeeds("convert", CABLED, "--detail", detail, "-o", self.folder / "cord.igs", "--resume", "--report",
-                          report, "--quiet")
+            self.succeeds(
+                "convert",
+                CABLED,
+                "--detail",
+                detail,
+                "-o",
+                self.folder / "cord.igs",
+                "--resume",
+                "--report",
+                report,
+                "--quiet",
+            )
         self.assertEqual(iges_groups((self.folder / "cord.igs").read_text())["cord"], PLIES)
 
 

@@ -34,10 +34,10 @@ def least_squares(points, at):
     ra, rb = [0.0, 0.0], [0.0, 0.0]
     for i in range(1, n):
         t = at[i]
-        a, b = 3 * t * (1 - t)**2, 3 * t * t * (1 - t)
+        a, b = 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t)
         aa, ab, bb = aa + a * a, ab + a * b, bb + b * b
         for k in (0, 1):
-            rest = points[i][k] - (1 - t)**3 * points[0][k] - t**3 * points[n][k]
+            rest = points[i][k] - (1 - t) ** 3 * points[0][k] - t**3 * points[n][k]
             ra[k] += a * rest
             rb[k] += b * rest
     if n == 2:  # the parabola through the three
@@ -74,8 +74,10 @@ def area_of(points):
 
 def triangles(mesh):
     """Number and area of the triangles of a mesh."""
-    areas = [((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
-             for _, (a, b, c) in gmsh_mesh.elements(mesh, gmsh_mesh.TRIANGLE)]
+    areas = [
+        ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
+        for _, (a, b, c) in gmsh_mesh.elements(mesh, gmsh_mesh.TRIANGLE)
+    ]
     return len(areas), sum(areas)
 
 
@@ -126,7 +128,9 @@ class Pieces(Case):
     def test_table_as_text(self):
         back = (SAMPLES / "back_piece.txt").read_text().replace("curve side S", "curve side S by uniform")
         table = self.succeeds("info", self.text(back), "--table").stdout
-        self.assertRegex(table, r"curve 'side' of piece 'back': S, points by uniform, largest error 0\.945, \d+ steps of descent")
+        self.assertRegex(
+            table, r"curve 'side' of piece 'back': S, points by uniform, largest error 0\.945, \d+ steps of descent"
+        )
         self.assertRegex(table, r"(?m)^ +3 +0\.5 +23\.6 +28 +0\.945 +0\.453$")
         self.assertRegex(table, r"(?m)^  B1 +20\.7935 +35\.3856 +20\.7935 +35\.3856 +\S+$")
 
@@ -146,7 +150,9 @@ class Pieces(Case):
                     runs = segments(path.get("d"))
                     kinds = ["line" if len(r) == 2 else "curve" for r in runs]
                     # A spline is a curve a span.
-                    alike = [[kind for kind, _ in itertools.groupby(k)] for k in (kinds, [e["kind"] for e in piece["edges"]])]
+                    alike = [
+                        [kind for kind, _ in itertools.groupby(k)] for k in (kinds, [e["kind"] for e in piece["edges"]])
+                    ]
                     self.assertEqual(*alike)
                     self.assertEqual(kinds.count("line"), [e["kind"] for e in piece["edges"]].count("line"))
                     self.assertEqual(path.find(f"{space}desc").text, ", ".join(e["name"] for e in piece["edges"]))
@@ -158,7 +164,10 @@ class Pieces(Case):
                 low = [min(p[k] for p in whole) for k in (0, 1)]
                 high = [max(p[k] for p in whole) for k in (0, 1)]
                 x, y, width, height = map(float, root.get("viewBox").split())
-                for page, box, at, a, b in (("width", width, x, low[0], high[0]), ("height", height, y, low[1], high[1])):
+                for page, box, at, a, b in (
+                    ("width", width, x, low[0], high[0]),
+                    ("height", height, y, low[1], high[1]),
+                ):
                     self.assertTrue(root.get(page).endswith("mm"))
                     self.assertAlmostEqual(float(root.get(page)[:-2]), box * mm, delta=1e-9 * box * mm)
                     self.assertAlmostEqual(box * mm, (b - a) * mm + 10, delta=1e-4)
@@ -178,8 +187,11 @@ class Pieces(Case):
         script = self.folder / "piece.geo"
         script.write_text(
             f'SetFactory("OpenCASCADE");\nv() = ShapeFromFile("{file.name}");\ns() = Surface{{:}};\n'
-            'For i In {0:#s()-1}\nm() = Mass Surface{s(i)};\nPrintf("mass %.16g", m(0));\nEndFor\n')
-        read = subprocess.run([GMSH, script.name, "-parse_and_exit"], cwd=self.folder, capture_output=True, text=True, timeout=300)
+            'For i In {0:#s()-1}\nm() = Mass Surface{s(i)};\nPrintf("mass %.16g", m(0));\nEndFor\n'
+        )
+        read = subprocess.run(
+            [GMSH, script.name, "-parse_and_exit"], cwd=self.folder, capture_output=True, text=True, timeout=300
+        )
         areas = [float(m) for m in re.findall(r"mass (\S+)", read.stdout)]
         self.assertEqual(len(areas), len(facts), read.stdout)
         for theirs, piece in zip(areas, facts):
@@ -187,8 +199,13 @@ class Pieces(Case):
             self.assertAlmostEqual(theirs / piece["area"], 1, delta=2e-2 if several_spans else 1e-9)
         total = sum(piece["area"] for piece in facts)
         for size in (math.sqrt(total) / k for k in (4, 16)):
-            subprocess.run([GMSH, file.name, "-2", "-format", "msh2", "-clmax", str(size), "-clmin", str(size), "-o", "p.msh"],
-                           cwd=self.folder, capture_output=True, check=True, timeout=300)
+            subprocess.run(
+                [GMSH, file.name, "-2", "-format", "msh2", "-clmax", str(size), "-clmin", str(size), "-o", "p.msh"],
+                cwd=self.folder,
+                capture_output=True,
+                check=True,
+                timeout=300,
+            )
             count, area = triangles(self.folder / "p.msh")
             self.assertGreater(count, 4)
             # Chords of curves: of second order in their length.
@@ -223,7 +240,9 @@ class Pieces(Case):
         file = self.folder / "p.dxf"
         done = self.succeeds("convert", sample, "-o", file, *options)
         python = pathlib.Path("/usr/bin/python3")
-        read = subprocess.run([python, "-B", pathlib.Path(__file__).with_name("dxf_facts.py"), file], capture_output=True, text=True)
+        read = subprocess.run(
+            [python, "-B", pathlib.Path(__file__).with_name("dxf_facts.py"), file], capture_output=True, text=True
+        )
         self.assertEqual(read.returncode, 0, read.stderr)
         return json.loads(read.stdout), done.stderr
 
@@ -241,12 +260,16 @@ class Pieces(Case):
                     for block, piece in zip(read["blocks"], facts):
                         self.assertTrue(block["closed"])
                         self.assertEqual(block["at"], [0, 0, 0])
-                        self.assertEqual(block["kinds"], ["LINE" if e["kind"] == "line" else "SPLINE" for e in piece["edges"]])
+                        self.assertEqual(
+                            block["kinds"], ["LINE" if e["kind"] == "line" else "SPLINE" for e in piece["edges"]]
+                        )
                         self.assertAlmostEqual(block["area"] * mm**2 / piece["area"], 1, delta=1e-6)
                         fits = [e["fit"] for e in piece["edges"] if "fit" in e]
                         for ours, theirs in zip(fits, block["control_points"]):
                             theirs = [[x * mm for x in p] for p in theirs]
-                            gaps = [max(map(math.dist, order, ours["control_points"])) for order in (theirs, theirs[::-1])]
+                            gaps = [
+                                max(map(math.dist, order, ours["control_points"])) for order in (theirs, theirs[::-1])
+                            ]
                             self.assertLess(min(gaps), 1e-9 * math.sqrt(piece["area"]))
                         layers = {"2": len(piece["edges"]), "3": sum(len(f["points"]) - 2 for f in fits)}
                         self.assertEqual(block["layers"], layers)
@@ -259,7 +282,9 @@ class Pieces(Case):
 
     def test_names_in_dxf(self):
         second = SQUARE.split("\n", 2)[2]
-        read, words = self.dxf(self.text(SQUARE.format('"R\u00fccken/1"') + second.format('"r\u00dcCKEN:1"') + second.format('"R_1"')))
+        read, words = self.dxf(
+            self.text(SQUARE.format('"R\u00fccken/1"') + second.format('"r\u00dcCKEN:1"') + second.format('"R_1"'))
+        )
         self.assertEqual((read["errors"], read["fixes"]), (0, 0))
         names = [block["name"] for block in read["blocks"]]
         self.assertEqual(names[0], "R\u00fccken_1")
@@ -272,27 +297,42 @@ class Pieces(Case):
             for name in "ab":
                 (self.folder / name).mkdir(exist_ok=True)
                 self.succeeds("convert", SAMPLES / "pocket_pieces.txt", "-o", self.folder / name / f"p.{suffix}")
-            self.assertEqual((self.folder / "a" / f"p.{suffix}").read_bytes(), (self.folder / "b" / f"p.{suffix}").read_bytes())
+            self.assertEqual(
+                (self.folder / "a" / f"p.{suffix}").read_bytes(), (self.folder / "b" / f"p.{suffix}").read_bytes()
+            )
 
     def test_check(self):
         for sample in PIECES:
             done = self.succeeds("check", sample)
             self.assertIn("sound: every piece is a valid face in a closed outline", done.stdout)
-        for name, words in (("gap", "starts at"), ("open", "not closed"), ("crossing", "crosses or touches"), ("flat", "no area")):
+        for name, words in (
+            ("gap", "starts at"),
+            ("open", "not closed"),
+            ("crossing", "crosses or touches"),
+            ("flat", "no area"),
+        ):
             self.assertIn(words, self.fails(3, "check", SAMPLES / "bad" / f"piece_{name}.txt"))
 
     def test_word_that_says_otherwise(self):
         sample = self.text("fabric 1\npiece p\ncurve arc S\n0 0\n1 1\n2 0\nend\nline l 2 0 0 0\nend\n")
-        warning = f"{sample}:3:1: warning: curve 'arc' is called S, but turns one way only, as a C does, and so do its points"
+        warning = (
+            f"{sample}:3:1: warning: curve 'arc' is called S, but turns one way only, as a C does, and so do its points"
+        )
         self.assertIn(warning, self.succeeds("info", sample).stderr)
         self.assertIn(warning, self.fails(1, "info", sample, "--strict"))
 
     def test_what_cannot_hold_a_piece(self):
         back = SAMPLES / "back_piece.txt"
-        self.assertRegex(self.fails(1, "mesh", back, "-o", self.folder / "p.inp"), r"back_piece.txt:5:1: error: .*flat face")
+        self.assertRegex(
+            self.fails(1, "mesh", back, "-o", self.folder / "p.inp"), r"back_piece.txt:5:1: error: .*flat face"
+        )
         for suffix in ("svg", "dxf"):
-            self.assertRegex(self.fails(1, "convert", PATH, "-o", self.folder / f"y.{suffix}"), f"{suffix} holds garment pieces")
-        both = self.text(pathlib.Path(PATH).read_text() + "piece p\nline a 0 0 2 0\nline b 2 0 2 3\nline c 2 3 0 0\nend\n")
+            self.assertRegex(
+                self.fails(1, "convert", PATH, "-o", self.folder / f"y.{suffix}"), f"{suffix} holds garment pieces"
+            )
+        both = self.text(
+            pathlib.Path(PATH).read_text() + "piece p\nline a 0 0 2 0\nline b 2 0 2 3\nline c 2 3 0 0\nend\n"
+        )
         self.assertIn("has 4 yarns", self.fails(1, "convert", both, "-o", self.folder / "y.svg"))
         self.assertFalse((self.folder / "y.svg").exists())
         report = self.folder / "r.json"
@@ -306,22 +346,42 @@ class Pieces(Case):
         """Three bodies, drafted here once more; the curves by their cubics through four rows, the area by a polygon."""
         for chest, back, neck in ((88, 41, 36), (104, 43, 40), (76, 38.5, 34.5)):
             width, depth, hollow = chest / 4 + 1.5, chest / 8 + 10.5, neck / 6 + 0.5
-            armhole = [(width, back - depth), (width - 3.6, back - depth + 3.4), (chest / 8 + neck / 8 + 2, back - depth / 2),
-                       (hollow + 11.5, back - 4.5)]
-            neckline = [(hollow, back), (0.87 * hollow, back - 0.575 * hollow), (0.5 * hollow, back - hollow),
-                        (0, back - 1.15 * hollow)]
+            armhole = [
+                (width, back - depth),
+                (width - 3.6, back - depth + 3.4),
+                (chest / 8 + neck / 8 + 2, back - depth / 2),
+                (hollow + 11.5, back - 4.5),
+            ]
+            neckline = [
+                (hollow, back),
+                (0.87 * hollow, back - 0.575 * hollow),
+                (0.5 * hollow, back - hollow),
+                (0, back - 1.15 * hollow),
+            ]
             cubics = [[rows[0], *least_squares(rows, [0, 1 / 3, 2 / 3, 1]), rows[-1]] for rows in (armhole, neckline)]
             body = ("--set", f"chest={chest}", "--set", f"back={back}", "--set", f"neck={neck}")
             (piece,), mm = self.facts(SAMPLES / "bodice_measured.txt", "--table", *body)
             lengths = {edge["name"]: edge["length"] / mm for edge in piece["edges"]}
-            for name, (p, q) in {"waist": ((0, 0), (width, 0)), "side": ((width, 0), armhole[0]), "shoulder": (armhole[-1], neckline[0]),
-                                 "middle": (neckline[-1], (0, 0))}.items():
+            for name, (p, q) in {
+                "waist": ((0, 0), (width, 0)),
+                "side": ((width, 0), armhole[0]),
+                "shoulder": (armhole[-1], neckline[0]),
+                "middle": (neckline[-1], (0, 0)),
+            }.items():
                 self.assertAlmostEqual(lengths[name], math.dist(p, q), delta=1e-12 * back)
             for name, cubic in zip(("armhole", "neckline"), cubics):
                 points = [bezier(cubic, i / 2000) for i in range(2001)]
                 self.assertAlmostEqual(lengths[name], sum(map(math.dist, points, points[1:])), delta=1e-5)
-            outline = polygon_of([[(0, 0), (width, 0)], [(width, 0), armhole[0]], cubics[0], [armhole[-1], neckline[0]], cubics[1],
-                                  [neckline[-1], (0, 0)]])
+            outline = polygon_of(
+                [
+                    [(0, 0), (width, 0)],
+                    [(width, 0), armhole[0]],
+                    cubics[0],
+                    [armhole[-1], neckline[0]],
+                    cubics[1],
+                    [neckline[-1], (0, 0)],
+                ]
+            )
             self.assertAlmostEqual(piece["area"] / mm**2, area_of(outline), delta=1e-4)
 
     def test_armhole_follows_its_sleeve(self):
@@ -353,20 +413,28 @@ class Pieces(Case):
         self.assertEqual(len(facts), 2)
         self.assertIn("where the outline would open", self.fails(1, *edit, "--point", "1", "--to", "0,1"))
         self.assertIn("two numbers", self.fails(2, *edit, "--point", "2", "--to", "0,1,2"))
-        self.assertIn("either --yarn NAME, or --piece", self.fails(2, "edit", source, "--point", "1", "--to", "0,1", "-o", "-"))
-        self.assertIn("no piece 'x'", self.fails(1, "edit", source, "--piece", "x", "--curve", "cap", "--point", "2", "--to", "0,1",
-                                                 "-o", "-"))
+        self.assertIn(
+            "either --yarn NAME, or --piece", self.fails(2, "edit", source, "--point", "1", "--to", "0,1", "-o", "-")
+        )
+        self.assertIn(
+            "no piece 'x'",
+            self.fails(1, "edit", source, "--piece", "x", "--curve", "cap", "--point", "2", "--to", "0,1", "-o", "-"),
+        )
 
     def test_rational_curves_in_files(self):
         """A disc of four rational cubics, and a half of one B-spline with weights and knots, before gmsh and ezdxf."""
         w, a = (1 + math.sqrt(2)) / 3, math.sqrt(2) / (1 + math.sqrt(2))
         text, (x, y) = "fabric 1\nunits cm\npiece disc\n", (2, 0)
         for quarter in range(4):
-            text += (f"curve q{quarter} control\n{x} {y}\n{x - a * y} {y + a * x} {w}\n{-y + a * x} {x + a * y} {w}\n"
-                     f"{-y} {x}\nend\n")
+            text += (
+                f"curve q{quarter} control\n{x} {y}\n{x - a * y} {y + a * x} {w}\n{-y + a * x} {x + a * y} {w}\n"
+                f"{-y} {x}\nend\n"
+            )
             x, y = -y, x
-        text += ("end\npiece half\ncurve c control\nknots 0 0 0 0 0.3 0.3 0.7 1 1 1 1\n5 0\n6 0 2\n7 1\n7 2 0.5\n6 3\n5 3 3\n4 1\nend\n"
-                 "line l 4 1 5 0\nend\n")
+        text += (
+            "end\npiece half\ncurve c control\nknots 0 0 0 0 0.3 0.3 0.7 1 1 1 1\n5 0\n6 0 2\n7 1\n7 2 0.5\n6 3\n5 3 3\n4 1\nend\n"
+            "line l 4 1 5 0\nend\n"
+        )
         sample = self.text(text, "disc.txt")
         facts, _ = self.facts(sample)
         self.assertAlmostEqual(facts[0]["area"], 400 * math.pi, delta=1e-5)
@@ -384,7 +452,9 @@ class Pieces(Case):
         for sample in PIECES:
             self.succeeds("convert", sample, "-o", self.folder / "again.txt")
             first = self.succeeds("convert", sample, "--to", "svg", "-o", "-").stdout
-            self.assertEqual(first, self.succeeds("convert", self.folder / "again.txt", "--to", "svg", "-o", "-").stdout)
+            self.assertEqual(
+                first, self.succeeds("convert", self.folder / "again.txt", "--to", "svg", "-o", "-").stdout
+            )
 
 
 if __name__ == "__main__":

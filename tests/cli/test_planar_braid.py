@@ -17,13 +17,15 @@ from program import Case, ROOT, SAMPLES
 
 HOMOGENIZE = ROOT / "scripts" / "homogenize.py"
 TEXT = (SAMPLES / "cell_triaxial.txt").read_text()
-CELL = TEXT[TEXT.index("cell repeat"):]
+CELL = TEXT[TEXT.index("cell repeat") :]
 
 
 def braid(carriers=4, pattern="2/2", width="4.4", angle=45, length=4.4, axial="axial carbon 2", cell=CELL):
-    block = (f"braid\n  thread carbon\n  carriers {carriers}\n  pattern {pattern}\n  planar {width}\n  angle {angle}\n"
-             f"  length {length}\n  {axial}\nend\n")
-    return TEXT[:TEXT.index("braid\n  thread")] + block + cell
+    block = (
+        f"braid\n  thread carbon\n  carriers {carriers}\n  pattern {pattern}\n  planar {width}\n  angle {angle}\n"
+        f"  length {length}\n  {axial}\nend\n"
+    )
+    return TEXT[: TEXT.index("braid\n  thread")] + block + cell
 
 
 class PlanarBraid(Case):
@@ -64,7 +66,13 @@ class PlanarBraid(Case):
             z, other = (np.interp(x, line[:, 0], line[:, 2]) for line in (first, second))
             self.assertEqual(z > other, round(number) % (over + under) < over)
             crossings += 1
-        places = sorted({round(float(line[0, 1]) / column + (carriers - 1) / 2, 6) for name, line in lines.items() if name.startswith("axial")})
+        places = sorted(
+            {
+                round(float(line[0, 1]) / column + (carriers - 1) / 2, 6)
+                for name, line in lines.items()
+                if name.startswith("axial")
+            }
+        )
         self.assertEqual(places, axials)
         return crossings
 
@@ -76,8 +84,12 @@ class PlanarBraid(Case):
         ):
             with self.subTest(carriers=carriers):
                 width = 1.6 * carriers
-                text = braid(carriers, f"{over}/{under}", width, angle, 20, f"axial carbon {axial}" if axial else "", "")
-                self.assertGreater(self.assert_braided(self.lines(text), carriers, over, under, width, angle, axials), 3 * carriers)
+                text = braid(
+                    carriers, f"{over}/{under}", width, angle, 20, f"axial carbon {axial}" if axial else "", ""
+                )
+                self.assertGreater(
+                    self.assert_braided(self.lines(text), carriers, over, under, width, angle, axials), 3 * carriers
+                )
 
     def test_nothing_overlaps(self):
         """Nor comes nearer than the gap that the page promises, a half per cent of the thickness, with room for the tolerance."""
@@ -91,8 +103,13 @@ class PlanarBraid(Case):
 
     def test_its_repeat(self):
         """Two crossings by four columns; twice as many where every fourth run alone has an axial yarn, by two with pattern 1/1."""
-        for text, sides in ((braid(), (2.2, 4.4)), (braid(8, width="8.8", axial="axial carbon 1"), (2.2, 8.8)), (braid(8, width="8.8", axial="axial carbon 4"), (2.2, 4.4)),
-                            (braid(4, "1/1", 6, axial=""), (3, 3)), (braid(4, angle=60, width=8), (4 / np.sqrt(3), 8))):
+        for text, sides in (
+            (braid(), (2.2, 4.4)),
+            (braid(8, width="8.8", axial="axial carbon 1"), (2.2, 8.8)),
+            (braid(8, width="8.8", axial="axial carbon 4"), (2.2, 4.4)),
+            (braid(4, "1/1", 6, axial=""), (3, 3)),
+            (braid(4, angle=60, width=8), (4 / np.sqrt(3), 8)),
+        ):
             low, high = self.corners(text)
             np.testing.assert_allclose((high - low)[:2], sides, rtol=1e-5)
 
@@ -102,17 +119,35 @@ class PlanarBraid(Case):
         for at in ((0.3, 0.2), (0.3, -3.1), (30.8, 20.7)):
             x, y = at
             text = braid(cell=f"cell {x} {y} -0.45  {x + 2.2} {y + 4.4} 0.45\n  matrix epoxy\n  periodic x y\nend\n")
-            done = self.succeeds("mesh", self.written(text), "--matrix", "--periodic", "--size", "0.3", "--order", "1", "-o", self.folder / "cell.inp")
+            done = self.succeeds(
+                "mesh",
+                self.written(text),
+                "--matrix",
+                "--periodic",
+                "--size",
+                "0.3",
+                "--order",
+                "1",
+                "-o",
+                self.folder / "cell.inp",
+            )
             shares.append(float(re.search(r"yarns fill .* \(wanted: (\S+) %\)", done.stdout + done.stderr)[1]))
         self.assertLess(np.ptp(shares), 0.02)
         text = braid(cell="cell 0 0 -0.45  2.2 3.3 0.45\n  matrix epoxy\n  periodic x y\nend\n")
         told = self.fails(1, "mesh", self.written(text), "--matrix", "--periodic", "-o", self.folder / "cell.inp")
-        self.assertRegex(told, r"3\.3 mm long along y, which is no whole number of repeats: its yarns repeat after 4\.4 mm")
+        self.assertRegex(
+            told, r"3\.3 mm long along y, which is no whole number of repeats: its yarns repeat after 4\.4 mm"
+        )
 
     def test_refusals(self):
-        self.assertIn("the pattern 2/2 does not repeat in a planar braid of 6 carriers: it takes a multiple of 4, such as 8",
-                      self.fails(1, "check", self.written(braid(6))))
-        self.assertIn("of a planar braid run each way: their number has to be even", self.fails(1, "check", self.written(braid(5))))
+        self.assertIn(
+            "the pattern 2/2 does not repeat in a planar braid of 6 carriers: it takes a multiple of 4, such as 8",
+            self.fails(1, "check", self.written(braid(6))),
+        )
+        self.assertIn(
+            "of a planar braid run each way: their number has to be even",
+            self.fails(1, "check", self.written(braid(5))),
+        )
         told = self.fails(1, "check", self.written(braid(width=1)))
         needed = re.search(r"it has to be at least (\S+) mm", told)[1]
         self.succeeds("info", self.written(braid(width=needed)))
@@ -127,16 +162,26 @@ class PlanarBraid(Case):
 
     def test_its_stiffness(self):
         """Positive and symmetric; beside the braid by hand of the same sections, ways and pattern. That one is 7 % higher, so that
-        it has less yarn, and its waves are longer: what the one costs the other brings, within 5 % of the diagonal's roots (found: 3.6)."""
+        it has less yarn, and its waves are longer: what the one costs the other brings, within 5 % of the diagonal's roots (found: 3.6).
+        """
         if shutil.which("ccx") is None:
             self.skipTest("CalculiX is not installed")
         found = []
-        for text in (TEXT.replace("matrix epoxy", "matrix epoxy\n  periodic x y z"),
-                     (SAMPLES / "cell_braid.txt").read_text().replace("periodic x y", "periodic x y z")):
+        for text in (
+            TEXT.replace("matrix epoxy", "matrix epoxy\n  periodic x y z"),
+            (SAMPLES / "cell_braid.txt").read_text().replace("periodic x y", "periodic x y z"),
+        ):
             deck = self.folder / "cell.inp"
-            self.succeeds("mesh", self.written(text), "--matrix", "--periodic", "--size", "0.25", "--order", "1", "-o", deck)
-            run = subprocess.run([sys.executable, HOMOGENIZE, deck, "--json", "-", "--solver", "direct"], capture_output=True, text=True,
-                                 check=False, env=os.environ)
+            self.succeeds(
+                "mesh", self.written(text), "--matrix", "--periodic", "--size", "0.25", "--order", "1", "-o", deck
+            )
+            run = subprocess.run(
+                [sys.executable, HOMOGENIZE, deck, "--json", "-", "--solver", "direct"],
+                capture_output=True,
+                text=True,
+                check=False,
+                env=os.environ,
+            )
             self.assertEqual(run.returncode, 0, run.stderr)
             result = json.loads(run.stdout)
             self.assertLess(result["asymmetry"], 1e-6)

@@ -21,10 +21,12 @@ TOW, RESIN = "transverse 51500 17500 0.26 5800 0.31", "isotropic 3400 0.35"
 def plate_text(tow=TOW, thickness=0.7):
     """A straight tow in the middle of a plate of 1 x 1."""
     middle = thickness / 2
-    return (f"fabric 1\nmaterial tow\n elastic {tow}\n expansion 60e-6 60e-6\nend\nmaterial resin\n elastic {RESIN}\n"
-            " expansion 60e-6 60e-6\nend\nthread T\n section ellipse 0.8 0.5\n material tow\nend\n"
-            f"yarn tow T\n path\n -0.5 0.5 {middle}\n 1.5 0.5 {middle}\n end\nend\n"
-            f"cell 0 0 0  1 1 {thickness}\n matrix resin\n periodic x y\nend\n")
+    return (
+        f"fabric 1\nmaterial tow\n elastic {tow}\n expansion 60e-6 60e-6\nend\nmaterial resin\n elastic {RESIN}\n"
+        " expansion 60e-6 60e-6\nend\nthread T\n section ellipse 0.8 0.5\n material tow\nend\n"
+        f"yarn tow T\n path\n -0.5 0.5 {middle}\n 1.5 0.5 {middle}\n end\nend\n"
+        f"cell 0 0 0  1 1 {thickness}\n matrix resin\n periodic x y\nend\n"
+    )
 
 
 def scaled(difference, matrix):
@@ -42,8 +44,13 @@ class Plates(Case):
         return deck, run
 
     def homogenize(self, deck, *more):
-        return subprocess.run([sys.executable, HOMOGENIZE, deck, "--json", "-", *more], capture_output=True, text=True,
-                              check=False, env=os.environ)
+        return subprocess.run(
+            [sys.executable, HOMOGENIZE, deck, "--json", "-", *more],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=os.environ,
+        )
 
     def stiffness(self, deck, *more):
         run = self.homogenize(deck, *more)

@@ -56,7 +56,7 @@ class Spline:
     def derivative(self):
         out = Spline.__new__(Spline)
         n = len(self.p)
-        steps = self.k[self.d + 1:self.d + n] - self.k[1:n]
+        steps = self.k[self.d + 1 : self.d + n] - self.k[1:n]
         with np.errstate(divide="ignore", invalid="ignore"):
             out.p = np.where(steps[:, None] > 0, self.d * np.diff(self.p, axis=0) / steps[:, None], 0)
         out.d, out.k = self.d - 1, self.k[1:-1]
@@ -64,12 +64,14 @@ class Spline:
 
     def dense(self, of_each=60):
         knots = np.unique(self.k)
-        return np.concatenate([np.linspace(a, b, of_each, endpoint=False) for a, b in zip(knots, knots[1:])] + [[knots[-1]]])
+        return np.concatenate(
+            [np.linspace(a, b, of_each, endpoint=False) for a, b in zip(knots, knots[1:])] + [[knots[-1]]]
+        )
 
     def curvature(self, ts):
         first, second = self.derivative(), self.derivative().derivative()
         a, b = first(ts), second(ts)
-        return np.linalg.norm(np.cross(a, b), axis=1) / np.linalg.norm(a, axis=1)**3
+        return np.linalg.norm(np.cross(a, b), axis=1) / np.linalg.norm(a, axis=1) ** 3
 
 
 def distances(points, line):
@@ -130,7 +132,9 @@ class Points(Case):
         source = SAMPLES / "plain4_path.txt"
         self.succeeds("convert", source, "--to", "csv,vtp", "--lines", "-o", f"{self.out}/")
         for form in ("csv", "vtp"):
-            self.succeeds("convert", self.out / f"plain4_path.{form}", "--to", "csv", "--lines", "-o", self.out / "b.csv")
+            self.succeeds(
+                "convert", self.out / f"plain4_path.{form}", "--to", "csv", "--lines", "-o", self.out / "b.csv"
+            )
             with open(self.out / "plain4_path.csv", newline="") as a, open(self.out / "b.csv", newline="") as b:
                 one, other = list(csv.DictReader(a)), list(csv.DictReader(b))
             self.assertEqual([r["yarn"] for r in one], [r["yarn"] for r in other])
@@ -148,7 +152,10 @@ class Points(Case):
 
     def test_noisy_points(self):
         """Sigma is known: at the error of five of it the line is near the true curve, and bends no more than it should."""
-        for shape, curvature in ((helix, 4 * np.pi**2 * 4 / ((4 * np.pi)**2 + 16)), (sine, 0.4 * (0.8 * np.pi)**2)):
+        for shape, curvature in (
+            (helix, 4 * np.pi**2 * 4 / ((4 * np.pi) ** 2 + 16)),
+            (sine, 0.4 * (0.8 * np.pi) ** 2),
+        ):
             for sigma, count in ((0.01, 400), (0.003, 150)):
                 points = self.noisy(shape, sigma, count, 7)
                 error = 5 * sigma
@@ -200,7 +207,7 @@ class Points(Case):
         for r in table:
             t = float(r["x_mm"]) / 10
             a, b = 0.2 + 0.1 * t, 0.1 - 0.05 * t
-            self.assertAlmostEqual(math.pi * float(r["radius_mm"])**2, math.pi * a * b, delta=0.03)
+            self.assertAlmostEqual(math.pi * float(r["radius_mm"]) ** 2, math.pi * a * b, delta=0.03)
             # The width ends where the section has turned to.
             turn = math.degrees(math.atan2(float(r["side_z"]), float(r["side_y"])))
             self.assertLess(abs((turn - 90 * t + 90) % 180 - 90) if t > 0.02 else 0, 5)
@@ -209,8 +216,11 @@ class Points(Case):
         ts = np.linspace(0, 1, 61)
         points = np.c_[np.cos(2 * np.pi * ts), np.sin(2 * np.pi * ts), 0 * ts] / 10
         points[-1] = points[0]
-        self.write("r.csv", "name,x_cm,y_cm,z_cm,diameter_cm\n" + "".join(
-            f"ring,{x!r},{y!r},{z!r},0.02\n" for x, y, z in points.tolist()))
+        self.write(
+            "r.csv",
+            "name,x_cm,y_cm,z_cm,diameter_cm\n"
+            + "".join(f"ring,{x!r},{y!r},{z!r},0.02\n" for x, y, z in points.tolist()),
+        )
         for error in ("", " error 0.001"):
             text = self.write("r.txt", f"fabric 1\nunits mm\nyarn r\n  points r.csv yarn ring{error}\nend\n")
             (line,), _ = self.lines_of(text)
@@ -234,7 +244,7 @@ class Points(Case):
         self.write("stack.csv", "\n".join(rows) + "\n")
         done = self.succeeds("info", self.folder / "stack.csv", "--json")
         yarn = json.loads(done.stdout)["inputs"][0]["yarns"][0]
-        volume = math.pi * 0.15 * sum((1 - 0.05 * k / 1000)**2 for k in range(8000)) / 1000
+        volume = math.pi * 0.15 * sum((1 - 0.05 * k / 1000) ** 2 for k in range(8000)) / 1000
         self.assertAlmostEqual(yarn["volume"], volume, delta=0.005 * volume)
         self.assertNotIn("warning", self.succeeds("check", self.folder / "stack.csv").stderr)
 
@@ -260,7 +270,9 @@ class Points(Case):
         self.refused("yarn,x,y,radius\na,0,0,1\n", "bad.csv:1:1: error", "columns are missing: z")
         self.refused("x_mm,y_mm,z_cm,radius\n0,0,0,1\n", "different units")
         self.refused("x,y,z\n0,0,0\n1,0,0\n", "bad.csv:2:1: error", "how thick")
-        self.refused("point,x,y,z,radius\n1,0,0,0,1\n3,1,0,0,1\n2,2,0,0,1\n", "bad.csv:4:1: error", "points out of order")
+        self.refused(
+            "point,x,y,z,radius\n1,0,0,0,1\n3,1,0,0,1\n2,2,0,0,1\n", "bad.csv:4:1: error", "points out of order"
+        )
         self.refused("section,x,y,z\n1,0,0,0\n1,1,0,0\n", "bad.csv:2:3: error", "one section")
         self.refused(head + "a,0,0,0,1\na,1,0\n", "bad.csv:3:1: error", "3 values")
         yarn = "fabric 1\nyarn y\n  points bad.csv{}\nend\n"
@@ -269,14 +281,21 @@ class Points(Case):
         self.refused(two, "bad.txt:3:3: error", "no yarn 'c'", text=yarn.format(" yarn c"))
         self.refused(two, "bad.txt:3:24: error", text=yarn.format(" error -1"))
         self.refused(two, "bad.txt:3:3: error", "cannot open", text=yarn.format("").replace("bad.csv", "none.csv"))
-        self.refused(two, "bad.txt:3:3: error", "neither in this text's folder",
-                     text=yarn.format("").replace("bad.csv", "/etc/hostname"))
+        self.refused(
+            two,
+            "bad.txt:3:3: error",
+            "neither in this text's folder",
+            text=yarn.format("").replace("bad.csv", "/etc/hostname"),
+        )
 
     def test_bad_vtp(self):
         self.succeeds("convert", RING, "--to", "vtp", "--lines", "-o", self.out / "r.vtp")
         good = (self.out / "r.vtp").read_text()
-        for old, new, word in (("ascii", "binary", "only ascii"), ("Name=\"offsets\"", "Name=\"other\"", "no Lines"),
-                               ("<Points>", "<Nothing>", "no Points")):
+        for old, new, word in (
+            ("ascii", "binary", "only ascii"),
+            ('Name="offsets"', 'Name="other"', "no Lines"),
+            ("<Points>", "<Nothing>", "no Points"),
+        ):
             path = self.write("bad.vtp", good.replace(old, new))
             done = run("convert", path, "-o", self.out / "x.igs")
             self.assertNotEqual(done.returncode, 0)

@@ -33,8 +33,10 @@ def text_of(yarns, box, section, periodic="x y z", names=None):
         f"yarn {names[k] if names else f'rod_{k}'} rod\n  path\n    -1 {y!r} {z!r}\n    {box[0] + 1!r} {y!r} {z!r}\n  end\nend\n"
         for k, (y, z) in enumerate(yarns)
     )
-    return (f"fabric 1\nunits mm\ntolerance 1e-5\nthread rod\n  section {section}\nend\n{rows}"
-            f"cell 0 0 0  {box[0]!r} {box[1]!r} {box[2]!r}\n  periodic {periodic}\nend\n")
+    return (
+        f"fabric 1\nunits mm\ntolerance 1e-5\nthread rod\n  section {section}\nend\n{rows}"
+        f"cell 0 0 0  {box[0]!r} {box[1]!r} {box[2]!r}\n  periodic {periodic}\nend\n"
+    )
 
 
 def array(kind, share):
@@ -104,7 +106,11 @@ class Pores(Case):
         cell = self.folder / "cell.txt"
         cell.write_text(array("square", 0.4))
         self.succeeds("mesh", cell, "--pores", "--periodic", "--to", "foam,msh,cdb,vtu", "-o", self.folder)
-        foam, msh, vtu = PolyMesh(self.folder / "cell.foam"), meshio.read(self.folder / "cell.msh"), meshio.read(self.folder / "cell.vtu")
+        foam, msh, vtu = (
+            PolyMesh(self.folder / "cell.foam"),
+            meshio.read(self.folder / "cell.msh"),
+            meshio.read(self.folder / "cell.vtu"),
+        )
         places = np.unique(np.round(1e3 * foam.points, 9), axis=0)
         for mesh in (msh, vtu):  # Gmsh's file has them in another order
             self.assertTrue(np.array_equal(np.unique(np.round(mesh.points, 9), axis=0), places))
@@ -112,12 +118,18 @@ class Pores(Case):
             self.assertEqual(len(tetrahedra), foam.cells)
         for name in foam.patches:
             tag = msh.field_data[name][0]
-            found = sum((msh.cell_data["gmsh:physical"][k] == tag).sum() for k, block in enumerate(msh.cells) if block.type == "triangle")
+            found = sum(
+                (msh.cell_data["gmsh:physical"][k] == tag).sum()
+                for k, block in enumerate(msh.cells)
+                if block.type == "triangle"
+            )
             self.assertEqual(found, int(foam.patches[name]["nFaces"]), name)
         self.assertIn("pores", msh.field_data)
         archive = (self.folder / "cell.cdb").read_text()
         for name in foam.patches:
-            count, body = re.search(rf"^CMBLOCK,{name},NODE,\s*(\d+)\n\(8i10\)\n((?:[ \d]+\n)+)", archive, re.MULTILINE).groups()
+            count, body = re.search(
+                rf"^CMBLOCK,{name},NODE,\s*(\d+)\n\(8i10\)\n((?:[ \d]+\n)+)", archive, re.MULTILINE
+            ).groups()
             nodes = np.unique(foam.faces[foam.of_patch(name)]) + 1
             self.assertEqual([int(word) for word in body.split()], nodes.tolist())
             self.assertEqual(int(count), len(nodes))
@@ -135,8 +147,16 @@ class Pores(Case):
         that elements are as positive for Gmsh as for OpenFOAM."""
         radius, thickness, count = array_flow.radius_of("square", 0.4), 0.03, 3
         plain = PolyMesh(self.mesh(array("square", 0.4), "--periodic", "--segments", "20")[0])
-        case, said, facts = self.mesh(array("square", 0.4), "--periodic", "--segments", "20", "--layers", str(count), "--layer-thickness",
-                                      str(thickness))
+        case, said, facts = self.mesh(
+            array("square", 0.4),
+            "--periodic",
+            "--segments",
+            "20",
+            "--layers",
+            str(count),
+            "--layer-thickness",
+            str(thickness),
+        )
         mesh, wedges = PolyMesh(case), facts["layers"]["wedges"]
         self.assertEqual(mesh.faults(wedges), [])
         self.assertEqual(mesh.cells - wedges, plain.cells)
@@ -166,15 +186,21 @@ class Pores(Case):
         for name in ("cell.msh", "cell.vtu"):
             mesh = meshio.read(self.folder / name)
             self.assertTrue(np.array_equal(np.unique(np.round(mesh.points, 9), axis=0), places))
-            count = {kind: sum(len(block.data) for block in mesh.cells if block.type == kind) for kind in ("tetra", "wedge")}
+            count = {
+                kind: sum(len(block.data) for block in mesh.cells if block.type == kind) for kind in ("tetra", "wedge")
+            }
             self.assertEqual(count["tetra"] + count["wedge"], foam.cells)
             self.assertEqual(foam.faults(count["wedge"]), [])
         gmsh.initialize(["gmsh", "-v", "1"])
         try:
             gmsh.open(str(self.folder / "cell.msh"))
-            quads = {gmsh.model.getPhysicalName(2, tag): sum(len(gmsh.model.mesh.getElementsByType(3, entity)[0])
-                                                             for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag))
-                     for _, tag in gmsh.model.getPhysicalGroups(2)}
+            quads = {
+                gmsh.model.getPhysicalName(2, tag): sum(
+                    len(gmsh.model.mesh.getElementsByType(3, entity)[0])
+                    for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag)
+                )
+                for _, tag in gmsh.model.getPhysicalGroups(2)
+            }
             volume = 0
             for kind in (4, 6):
                 points, weights = gmsh.model.mesh.getIntegrationPoints(kind, "Gauss4")
@@ -221,13 +247,22 @@ class Pores(Case):
         cell.write_text(array("square", 0.4))
         for words, wanted in (
             (["--pores", "--matrix", "-o", "x.msh"], "--pores is the space that the yarns leave"),
-            (["--pores", "--to", "inp"], "inp does not hold --pores: write them with --to cdb --to msh --to vtu --to foam"),
+            (
+                ["--pores", "--to", "inp"],
+                "inp does not hold --pores: write them with --to cdb --to msh --to vtu --to foam",
+            ),
             (["--pores", "--order", "2", "--to", "foam"], "or with --order 1"),
             (["--periodic", "--to", "foam"], "add --pores"),
             (["--pores", "--to", "foam", "-o", "-"], "foam is a folder"),
             (["--pores", "--voxel", "5", "--to", "vtu"], "--pores is the space that the yarns leave"),
-            (["--pores", "--layers", "3", "--to", "cdb"], "cdb does not hold --layers: write them with --to msh --to vtu --to foam"),
-            (["--pores", "--layers", "3", "--order", "2", "--to", "msh"], "--layers is of tetrahedra and wedges with straight edges"),
+            (
+                ["--pores", "--layers", "3", "--to", "cdb"],
+                "cdb does not hold --layers: write them with --to msh --to vtu --to foam",
+            ),
+            (
+                ["--pores", "--layers", "3", "--order", "2", "--to", "msh"],
+                "--layers is of tetrahedra and wedges with straight edges",
+            ),
             (["--matrix", "--layers", "3", "--to", "msh"], "--layers is of walls round a fluid"),
             (["--pores", "--layer-thickness", "0.1", "--to", "msh"], "--layer-thickness is of layers along walls"),
         ):
@@ -241,7 +276,9 @@ class Permeability(Case):
     def permeability(self, text, *options):
         cell, result = self.folder / "cell.txt", self.folder / "result.json"
         cell.write_text(text)
-        done = subprocess.run([SCRIPTS / "permeability", cell, "--json", result, *options], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [SCRIPTS / "permeability", cell, "--json", result, *options], capture_output=True, text=True, check=False
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(result.read_text(), parse_constant=self.fail), done.stdout  # NaN is no JSON
 
@@ -252,7 +289,10 @@ class Permeability(Case):
         off = np.diag(tensor) / wanted - 1
         if IS_LONG:
             errors = [round(100 * result["error_mm2"][k][k] / tensor[k, k], 2) for k in range(3)]
-            print(f"{kind} {share} {result['solver']}: off by {np.round(100 * off, 2)} %, error said {errors} %, asymmetry {result['asymmetry']:.1e}", flush=True)
+            print(
+                f"{kind} {share} {result['solver']}: off by {np.round(100 * off, 2)} %, error said {errors} %, asymmetry {result['asymmetry']:.1e}",
+                flush=True,
+            )
         self.assertLess(np.abs(off).max(), within, f"{kind} {share}")
         self.assertLess(result["asymmetry"], 0.01 if result["solver"] == "own" else 0.05)
 
@@ -264,7 +304,11 @@ class Permeability(Case):
         # Drummond and Tahir, Int. J. Multiphase Flow 10 (1984) 515-540, at low shares: K over the radius squared.
         for kind, constant in (("square", 1.476335), ("hexagonal", 1.497505)):
             share = 0.05
-            low = (-math.log(share) - constant + 2 * share - share**2 / 2) / (4 * share) * array_flow.radius_of(kind, share) ** 2
+            low = (
+                (-math.log(share) - constant + 2 * share - share**2 / 2)
+                / (4 * share)
+                * array_flow.radius_of(kind, share) ** 2
+            )
             self.assertAlmostEqual(array_flow.along(kind, share) / low, 1, delta=1e-4)
 
     def test_an_array(self):
@@ -274,13 +318,17 @@ class Permeability(Case):
         """Upright cylinders in hexagons by their smallest repeat; each node of a face is its vector away from its like."""
         share, step = 0.4, np.array([[1, 0, 0], [0.5, math.sqrt(3) / 2, 0], [0, 0, LENGTH]])
         middle = step[:2].sum(axis=0) / 2
-        text = (f"fabric 1\nunits mm\ntolerance 1e-5\nthread rod\n  section circle {2 * array_flow.radius_of('hexagonal', share)!r}\nend\n"
-                f"yarn a rod\n  path\n    {middle[0]} {middle[1]!r} -1\n    {middle[0]} {middle[1]!r} 1\n  end\nend\n"
-                f"cell vectors {' '.join(str(x) for x in step.ravel())}  at 0 0 0\n  periodic x y z\nend\n")
+        text = (
+            f"fabric 1\nunits mm\ntolerance 1e-5\nthread rod\n  section circle {2 * array_flow.radius_of('hexagonal', share)!r}\nend\n"
+            f"yarn a rod\n  path\n    {middle[0]} {middle[1]!r} -1\n    {middle[0]} {middle[1]!r} 1\n  end\nend\n"
+            f"cell vectors {' '.join(str(x) for x in step.ravel())}  at 0 0 0\n  periodic x y z\nend\n"
+        )
         result, _ = self.permeability(text, "--segments", "16", "--keep", self.folder / "kept")
         tensor = np.array(result["permeability_mm2"])
         across = array_flow.across("hexagonal", share)
-        np.testing.assert_allclose(tensor, np.diag([across, across, array_flow.along("hexagonal", share)]), rtol=0.01, atol=0.002 * across)
+        np.testing.assert_allclose(
+            tensor, np.diag([across, across, array_flow.along("hexagonal", share)]), rtol=0.01, atol=0.002 * across
+        )
         self.check_links(self.folder / "kept" / "pores_16.msh", step)
 
     def check_links(self, path, step):
@@ -293,7 +341,9 @@ class Permeability(Case):
         for dimension, tag in gmsh.model.getEntities():
             if dimension == 3:
                 continue
-            original, nodes, others, affine = gmsh.model.mesh.getPeriodicNodes(dimension, tag, includeHighOrderNodes=True)
+            original, nodes, others, affine = gmsh.model.mesh.getPeriodicNodes(
+                dimension, tag, includeHighOrderNodes=True
+            )
             if original == tag:
                 continue
             shift = np.array(affine).reshape(4, 4)[:3, 3]
@@ -305,10 +355,15 @@ class Permeability(Case):
 
     def test_a_cell_between_two_reservoirs(self):
         """Along z it is open: of the tensor what couples z with the others is not known, and null."""
-        text = text_of([(0.5, 0.5)], (LENGTH, 1.0, 1.0), f"circle {2 * array_flow.radius_of('square', 0.4)!r}", periodic="x y")
+        text = text_of(
+            [(0.5, 0.5)], (LENGTH, 1.0, 1.0), f"circle {2 * array_flow.radius_of('square', 0.4)!r}", periodic="x y"
+        )
         result, said = self.permeability(text, "--segments", "10")
         tensor = result["permeability_mm2"]
-        self.assertEqual([[value is None for value in row] for row in tensor], [[i != j and 2 in (i, j) for j in range(3)] for i in range(3)])
+        self.assertEqual(
+            [[value is None for value in row] for row in tensor],
+            [[i != j and 2 in (i, j) for j in range(3)] for i in range(3)],
+        )
         self.assertTrue(all(value is None for row in result["error_mm2"] for value in row))
         self.assertIn("the cell is not periodic along z", said)
         # Mirrors are what periods are to rods that are symmetric, along them.
@@ -324,8 +379,13 @@ class Permeability(Case):
     def test_openfoam_not_there(self):
         cell = self.folder / "cell.txt"
         cell.write_text(array("square", 0.2))
-        done = subprocess.run([sys.executable, SCRIPTS / "permeability.py", cell, "--solver", "openfoam"], capture_output=True, text=True,
-                              env={"PATH": "/nowhere"}, check=False)
+        done = subprocess.run(
+            [sys.executable, SCRIPTS / "permeability.py", cell, "--solver", "openfoam"],
+            capture_output=True,
+            text=True,
+            env={"PATH": "/nowhere"},
+            check=False,
+        )
         self.assertEqual(done.returncode, 1)
         self.assertIn("apt-get install openfoam", done.stderr)
 

@@ -70,7 +70,11 @@ end
     def test_leno(self):
         """Who passes above whom, and on which side: told by the lines alone."""
         for kind in ("half", "full"):
-            for g, d, w, warp, weft in ((0.2, 0.2, 0.25, 0.6, 1.3), (0.3, 0.15, 0.2, 0.8, 2.0), (0.15, 0.2, 0.3, 0.7, 1.5)):
+            for g, d, w, warp, weft in (
+                (0.2, 0.2, 0.25, 0.6, 1.3),
+                (0.3, 0.15, 0.2, 0.8, 2.0),
+                (0.15, 0.2, 0.3, 0.7, 1.5),
+            ):
                 text = self.LENO.format(g, d, w, warp, weft, kind)
                 lines = self.lines_of(text)
                 self.sound(self.folder / "cloth.txt")
@@ -99,13 +103,15 @@ end
                         else:
                             self.assertTrue(0.5 < abs(turns) < 1, turns)
                     if kind == "half":
-                        self.assertEqual(sides, [sides[0] * (-1)**j for j in range(5)])
+                        self.assertEqual(sides, [sides[0] * (-1) ** j for j in range(5)])
                         self.assertNotEqual(sides[0], 0)
 
     def test_lenos_that_cannot_be(self):
-        for values, word in (((0.2, 0.2, 0.25, 0.2, 1.3, ""), "no room beside each other"),
-                             ((0.2, 0.2, 0.25, 0.6, 0.3, ""), "no room to cross"),
-                             ((0.2, 0.2, 0.25, 0.6, 1.3, "quarter"), "unknown")):
+        for values, word in (
+            ((0.2, 0.2, 0.25, 0.2, 1.3, ""), "no room beside each other"),
+            ((0.2, 0.2, 0.25, 0.6, 0.3, ""), "no room to cross"),
+            ((0.2, 0.2, 0.25, 0.6, 1.3, "quarter"), "unknown"),
+        ):
             source = self.folder / "cloth.txt"
             source.write_text(self.LENO.format(*values))
             done = run("convert", source, "-o", self.out / "x.igs")
@@ -122,32 +128,40 @@ end
         """The ratio of lengths, of the stripe's warps to the tight ones; picks stay."""
         for ratio, slack, every in ((1.08, 6, 12), (1.03, 4, 10), (1.12, 8, 16)):
             text = (SAMPLES / "weave_seersucker.txt").read_text()
-            text = text.replace("tight 3 slack 6 ratio 1.08 every 12", f"tight 3 slack {slack} ratio {ratio} every {every}")
+            text = text.replace(
+                "tight 3 slack 6 ratio 1.08 every 12", f"tight 3 slack {slack} ratio {ratio} every {every}"
+            )
             text = text.replace("3tight,6slack 12", f"3tight,{slack}slack {6 + slack}")
             text = text.replace("weft   tight 12", f"weft tight {every}")
             lines = self.lines_of(text)
             self.sound(self.folder / "cloth.txt")
             count = 6 + slack
             lengths = [length(line) for line in lines[:count]]
-            tight = lengths[:3] + lengths[3 + slack:]
+            tight = lengths[:3] + lengths[3 + slack :]
             self.assertLess(max(tight) - min(tight), 1e-6 * max(tight))
-            mean = np.mean(lengths[3:3 + slack]) / np.mean(tight)
+            mean = np.mean(lengths[3 : 3 + slack]) / np.mean(tight)
             self.assertAlmostEqual(mean, ratio, delta=5e-4)
             # A plain weave everywhere, in the stripe as beside it.
             warps, wefts = [Along(line, 0) for line in lines[:count]], [Along(line, 1) for line in lines[count:]]
             for i, warp in enumerate(warps):
                 for j, weft in enumerate(wefts):
                     above = warp(0.4 * (j + 0.5))[2] - weft(0.4 * (i + 0.5))[2]
-                    self.assertGreater(above * (-1)**(i + j), 0.15)
+                    self.assertGreater(above * (-1) ** (i + j), 0.15)
             heights = [np.abs(line(line.dense(10))[:, 2]).max() for line in lines[:count]]
             self.assertLess(max(heights[:3]), 0.25)
             self.assertGreater(heights[3 + slack // 2], 3 * max(heights[:3]))
 
     def test_helices(self):
-        for radius, pitch, turns, hand, start in ((1, 0.5, 3.25, "left", 30), (5, 2, 10, "right", 0), (0.3, 4, 0.5, "", -45)):
+        for radius, pitch, turns, hand, start in (
+            (1, 0.5, 3.25, "left", 30),
+            (5, 2, 10, "right", 0),
+            (0.3, 4, 0.5, "", -45),
+        ):
             tolerance = 1e-3
-            text = (f"fabric 1\ntolerance {tolerance}\nyarn a\n  diameter 0.2\n"
-                    f"  helix radius {radius} pitch {pitch} turns {turns} {hand} start {start}\nend\n")
+            text = (
+                f"fabric 1\ntolerance {tolerance}\nyarn a\n  diameter 0.2\n"
+                f"  helix radius {radius} pitch {pitch} turns {turns} {hand} start {start}\nend\n"
+            )
             (line,) = self.lines_of(text)
             wanted = turns * math.hypot(2 * math.pi * radius, pitch)
             self.assertAlmostEqual(length(line), wanted, delta=1e-4 * wanted)
@@ -214,8 +228,10 @@ end
     def test_a_straight_mandrel_is_the_tube(self):
         """Along any axis: the tube of `radius` and `length`, moved."""
         tube = self.lines_of(self.MANDREL.format(12, 40, "0 0 0 4\n    0 0 12 4"))
-        plain = self.lines_of("fabric 1\nthread t\n  diameter 0.4\nend\nbraid\n  thread t\n  carriers 12\n  pattern 1/1\n"
-                              "  angle 40\n  radius 4\n  length 12\nend\n")
+        plain = self.lines_of(
+            "fabric 1\nthread t\n  diameter 0.4\nend\nbraid\n  thread t\n  carriers 12\n  pattern 1/1\n"
+            "  angle 40\n  radius 4\n  length 12\nend\n"
+        )
         for a, b in zip(tube, plain):
             ts = b.dense(9)
             self.assertLess(np.max(np.abs(a(ts) - b(ts))), 1e-9)
@@ -233,9 +249,13 @@ end
         self.sound(SAMPLES / "braid_mandrel.txt")
 
     def test_mandrels_that_cannot_be(self):
-        for rows, word in (("0 0 0 4", "at least 2 rows"), ("0 0 0 4\n    0 0 0 4", "equals the one before"),
-                           ("0 0 0 4\n    0 0 9", "x y z RADIUS"), ("0 0 0 9\n    3 0 3 9\n    0 0 6 9", "folds"),
-                           ("0 0 0 4\n    0 0 30 0.2", "room")):
+        for rows, word in (
+            ("0 0 0 4", "at least 2 rows"),
+            ("0 0 0 4\n    0 0 0 4", "equals the one before"),
+            ("0 0 0 4\n    0 0 9", "x y z RADIUS"),
+            ("0 0 0 9\n    3 0 3 9\n    0 0 6 9", "folds"),
+            ("0 0 0 4\n    0 0 30 0.2", "room"),
+        ):
             source = self.folder / "cloth.txt"
             source.write_text(self.MANDREL.format(12, 35, rows))
             done = run("convert", source, "-o", self.out / "x.igs")

@@ -31,8 +31,22 @@ EDGES = (0.2, 0.14, 0.1)
 
 def record(**changed):
     """One that agrees: of second order, tending to 5, at edges of 2 and 1."""
-    return {"cell": "a", "property": "stiffness", "quantity": "C", "unit": "MPa", "method": "tetrahedra", "level": ["coarse", "medium"], "size": [2, 1],
-            "elements": [1, 8], "value": [5.4, 5.1], "error": [1.2, 0.3], "limit": 5.1, "order": None, "exact": None, **changed}
+    return {
+        "cell": "a",
+        "property": "stiffness",
+        "quantity": "C",
+        "unit": "MPa",
+        "method": "tetrahedra",
+        "level": ["coarse", "medium"],
+        "size": [2, 1],
+        "elements": [1, 8],
+        "value": [5.4, 5.1],
+        "error": [1.2, 0.3],
+        "limit": 5.1,
+        "order": None,
+        "exact": None,
+        **changed,
+    }
 
 
 class Errors(unittest.TestCase):
@@ -42,7 +56,9 @@ class Errors(unittest.TestCase):
             for factor in (0.3, -0.3):
                 values = [7 + factor * h**order for h in EDGES]
                 limit, errors, shown = convergence.stated(EDGES, values, BELIEVED)
-                self.assertAlmostEqual(limit, 7, delta=2e-3 * abs(values[-1] - 7))  # orders are tried in steps of a hundredth
+                self.assertAlmostEqual(
+                    limit, 7, delta=2e-3 * abs(values[-1] - 7)
+                )  # orders are tried in steps of a hundredth
                 self.assertAlmostEqual(shown, order, delta=0.011)
                 self.assertAlmostEqual(errors[2] / (1.25 * abs(values[2] - 7)), 1, delta=2e-3)
                 for value, error in zip(values, errors):
@@ -101,9 +117,11 @@ class Agreement(unittest.TestCase):
 
     def test_what_does_not(self):
         apart = record(method="voxels", value=[6.0, 5.9], error=[1.5, 0.2], limit=5.9)
-        for records, wanted in (([record(), apart], "a, C: no value lies within the errors of all meshes; 0.3 MPa are missing"),
-                                ([record(limit=5.5)], "a, C, tetrahedra, medium: 5.1 is 0.4 from the limit 5.5, and states 0.3"),
-                                ([record(exact=4.7)], "medium: 5.1 is 0.4 from the exact 4.7")):
+        for records, wanted in (
+            ([record(), apart], "a, C: no value lies within the errors of all meshes; 0.3 MPa are missing"),
+            ([record(limit=5.5)], "a, C, tetrahedra, medium: 5.1 is 0.4 from the limit 5.5, and states 0.3"),
+            ([record(exact=4.7)], "medium: 5.1 is 0.4 from the exact 4.7"),
+        ):
             faults = reference_cells.faults_of(records)
             self.assertEqual(len(faults), 1, faults)
             self.assertIn(wanted, faults[0])
@@ -113,8 +131,12 @@ class Committed(Case):
     def test_table_and_page(self):
         """They are each other's, and every mesh agrees; what is changed by hand is found."""
         self.assertEqual(reference_cells.check(BENCHMARK), [])
-        changes = (("RESULTS.md", r"± \d", "± 99"), ("results.json", r'"value": \[\d', '"value": [9'), ("results.json", r'"limit": \d', '"limit": 9'),
-                   ("results.json", r'"exact": 0\.\d', '"exact": 0.9'))
+        changes = (
+            ("RESULTS.md", r"± \d", "± 99"),
+            ("results.json", r'"value": \[\d', '"value": [9'),
+            ("results.json", r'"limit": \d', '"limit": 9'),
+            ("results.json", r'"exact": 0\.\d', '"exact": 0.9'),
+        )
         for number, (name, old, new) in enumerate(changes):
             folder = pathlib.Path(shutil.copytree(BENCHMARK, self.folder / str(number)))
             path = folder / name
@@ -137,15 +159,35 @@ class Committed(Case):
             with self.subTest(name):
                 coarse = reference_cells.Run(name, "stiffness", "tetrahedra", 0)
                 report = self.folder / "report.json"
-                self.succeeds("mesh", BENCHMARK / f"{name}.txt", "--matrix", "--periodic", "--size", coarse.size, "--order", "2", "-o", self.folder / "cell.inp",
-                              "--report", report)
+                self.succeeds(
+                    "mesh",
+                    BENCHMARK / f"{name}.txt",
+                    "--matrix",
+                    "--periodic",
+                    "--size",
+                    coarse.size,
+                    "--order",
+                    "2",
+                    "-o",
+                    self.folder / "cell.inp",
+                    "--report",
+                    report,
+                )
                 facts = json.loads(report.read_text())["inputs"][0]["mesh"]
                 self.assertGreater(facts["tets"], 100)
 
 
 class Command(Case):
     def command(self, *more):
-        return [sys.executable, SCRIPTS / "reference_cells.py", "--selvage", PROGRAM, "--out", self.folder / "out", *more]
+        return [
+            sys.executable,
+            SCRIPTS / "reference_cells.py",
+            "--selvage",
+            PROGRAM,
+            "--out",
+            self.folder / "out",
+            *more,
+        ]
 
     def run_script(self, *more):
         return subprocess.run(self.command(*more), capture_output=True, text=True, env=environment(), check=False)
@@ -159,10 +201,17 @@ class Command(Case):
         self.assertEqual(again.stderr.count(" elements, kept"), 10)
         self.assertEqual(again.stdout, first.stdout)
         self.assertIn("| [`fibres_hexagonal`](fibres_hexagonal.txt) | not run |", first.stdout)
-        records = {(one["quantity"], one["method"]): one for one in json.loads((self.folder / "out" / "results.json").read_text())}
+        records = {
+            (one["quantity"], one["method"]): one
+            for one in json.loads((self.folder / "out" / "results.json").read_text())
+        }
         pitch = 0.012533141
-        exact = {"k x": 0.75, "k y": 0.2 * array_of_cylinders("square", 0.5, 6.5), "K x": pitch**2 * array_flow.along("square", 0.5),
-                 "K z": pitch**2 * array_flow.across("square", 0.5)}
+        exact = {
+            "k x": 0.75,
+            "k y": 0.2 * array_of_cylinders("square", 0.5, 6.5),
+            "K x": pitch**2 * array_flow.along("square", 0.5),
+            "K z": pitch**2 * array_flow.across("square", 0.5),
+        }
         for name, wanted in exact.items():
             found = records[name, "tetrahedra"]
             self.assertAlmostEqual(found["exact"] / wanted, 1, delta=1e-6)
@@ -189,15 +238,23 @@ class Command(Case):
 
     def test_stopped(self):
         """By Ctrl-C: what was done is kept, nothing half done is."""
-        running = subprocess.Popen(self.command("--cells", "fibres_hexagonal", "--only", "stiffness"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   start_new_session=True, env=environment())
+        running = subprocess.Popen(
+            self.command("--cells", "fibres_hexagonal", "--only", "stiffness"),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            env=environment(),
+        )
         self.assertIn("[1/6] fibres_hexagonal", running.stderr.readline())
         os.killpg(running.pid, signal.SIGINT)
         _, rest = running.communicate()
         self.assertEqual(running.returncode, 130, rest)
         self.assertIn("stopped; what was done is kept", rest)
         self.assertNotIn("Traceback", rest)
-        self.assertEqual([path.name for path in (self.folder / "out").rglob("*.json")], ["stiffness_tetrahedra_coarse.json"])
+        self.assertEqual(
+            [path.name for path in (self.folder / "out").rglob("*.json")], ["stiffness_tetrahedra_coarse.json"]
+        )
         self.assertEqual(list((self.folder / "out").rglob("*.part")), [])
 
     def test_errors(self):
@@ -214,8 +271,23 @@ class Command(Case):
         program = self.folder / "selvage"
         program.write_text("#!/bin/sh\necho 'selvage 0'\n[ \"$1\" = --version ] || { echo 'error: no' >&2; exit 1; }\n")
         program.chmod(0o755)
-        told = subprocess.run([sys.executable, SCRIPTS / "reference_cells.py", "--selvage", program, "--out", self.folder / "out", "--cells",
-                               "fibres_square", "--only", "permeability"], capture_output=True, text=True, check=False)
+        told = subprocess.run(
+            [
+                sys.executable,
+                SCRIPTS / "reference_cells.py",
+                "--selvage",
+                program,
+                "--out",
+                self.folder / "out",
+                "--cells",
+                "fibres_square",
+                "--only",
+                "permeability",
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         self.assertEqual(told.returncode, 1)
         self.assertIn("[3/3] fibres_square, permeability, tetrahedra, fine: failed", told.stderr)
         self.assertIn("could not be meshed", told.stderr)
@@ -226,7 +298,19 @@ class Solver(Case):
     def test_with_and_without_scipy(self):
         """The iterative solver puts its matrix together where SciPy is there: the same stiffness."""
         deck, found = self.folder / "cell.inp", []
-        self.succeeds("mesh", BENCHMARK / "fibres_square.txt", "--matrix", "--periodic", "--size", "0.003", "--order", "2", "-o", deck, "--quiet")
+        self.succeeds(
+            "mesh",
+            BENCHMARK / "fibres_square.txt",
+            "--matrix",
+            "--periodic",
+            "--size",
+            "0.003",
+            "--order",
+            "2",
+            "-o",
+            deck,
+            "--quiet",
+        )
         kept = cell_elements.sparse
         self.addCleanup(setattr, cell_elements, "sparse", kept)
         for module in (kept, None):

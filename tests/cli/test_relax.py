@@ -6,10 +6,12 @@ import unittest
 
 from program import Case, PATH, files_below, run
 
-HEAD = ('fabric 1\ntitle "two yarns"\n'
-        "thread t\n  diameter 1\n  material steel\n  color 10 20 30\n  twist 100 S\nend\n"
-        "thread thin\n  diameter 0.3\nend\n"
-        "material steel\n  density 7.8\n  elastic isotropic 210000 0.3\nend\n")
+HEAD = (
+    'fabric 1\ntitle "two yarns"\n'
+    "thread t\n  diameter 1\n  material steel\n  color 10 20 30\n  twist 100 S\nend\n"
+    "thread thin\n  diameter 0.3\nend\n"
+    "material steel\n  density 7.8\n  elastic isotropic 210000 0.3\nend\n"
+)
 
 
 def yarn(name, role, rows, thread="t"):
@@ -78,8 +80,12 @@ class Solved(Relaxing):
     def test_the_text_says_what_it_said(self):
         text, _, _ = self.relaxed(CROSSING)
         self.assertTrue(text.startswith('fabric 1\ntitle "two yarns"\n'))
-        for words in ("thread t\n  diameter 1\n  twist 100 S\n  color 10 20 30\n  material steel\nend\n",
-                      "material steel\n  density 7.8\n", "yarn a t\n  role warp\n  grid ", "yarn b t\n  role weft\n  grid "):
+        for words in (
+            "thread t\n  diameter 1\n  twist 100 S\n  color 10 20 30\n  material steel\nend\n",
+            "material steel\n  density 7.8\n",
+            "yarn a t\n  role warp\n  grid ",
+            "yarn b t\n  role weft\n  grid ",
+        ):
             self.assertIn(words, text)
         self.assertEqual(run("check", self.folder / "apart.txt").stderr, "")
 
@@ -119,7 +125,9 @@ class Solved(Relaxing):
         """Nothing makes it wider, and it is as it was in the text that comes out."""
         for text in (FREE, CROSSING):
             _, done, _ = self.relaxed(text + yarn("bent", "other", ["6 0 0", "9 0 0", "9.3 0.3 0", "9 0.6 0", "6 2 0"]))
-            self.assertEqual(done.stderr.count("yarn 'bent' bends more tightly than its section allows"), 1, done.stderr)
+            self.assertEqual(
+                done.stderr.count("yarn 'bent' bends more tightly than its section allows"), 1, done.stderr
+            )
 
     def test_gap(self):
         self.relaxed(CROSSING, "--gap", "0.2")
@@ -147,7 +155,7 @@ class Solved(Relaxing):
             sections = []
             for text in (before, after):
                 rows = rows_of(text, name)
-                sections.append([rows[k:k + round_] for k in range(0, len(rows), round_)])
+                sections.append([rows[k : k + round_] for k in range(0, len(rows), round_)])
             if len(sections[0]) != len(sections[1]):
                 continue  # knots were put in: not row by row
             for old, new in zip(*sections):
@@ -168,9 +176,12 @@ class Solved(Relaxing):
         self.assertFalse((self.folder / "none.txt").exists())
 
     def test_plies_stay_parts_of_their_yarn(self):
-        plied = (HEAD + "thread ply\n  diameter 0.8\n  tex 90\n  density 1.5\n  plies 2 100 S\n  material steel\nend\n" +
-                 yarn("a", "warp", ["-3 0 0", "0 0 0", "3 0 0"], "ply") + yarn("b", "weft", ["0 -3 0.6", "0 0 0.6", "0 3 0.6"],
-                                                                              "ply"))
+        plied = (
+            HEAD
+            + "thread ply\n  diameter 0.8\n  tex 90\n  density 1.5\n  plies 2 100 S\n  material steel\nend\n"
+            + yarn("a", "warp", ["-3 0 0", "0 0 0", "3 0 0"], "ply")
+            + yarn("b", "weft", ["0 -3 0.6", "0 0 0.6", "0 3 0.6"], "ply")
+        )
         text, _, relax = self.relaxed(plied)
         self.assertGreater(relax["before"]["overlaps"], 0)
         for name in ("a.ply1", "a.ply2", "b.ply1", "b.ply2"):
@@ -182,10 +193,14 @@ class Solved(Relaxing):
     def test_folds_of_grids_are_those_of_their_surfaces(self):
         """The middle line of a grid's rows may be bent where the surface is not: a straight yarn whose sections turn and shrink."""
         head = "fabric 1\ntolerance 0.002\nthread t\n  diameter 0.55\nend\nyarn y t\n"
-        straight = self.file(head + "  ends fan\n  path polyline\n    0 0.85 -0.26 0.435 0.663 89.9\n"
-                             "    1.1 0.79 -0.02 0.627 0.419\n  end\nend\n")
+        straight = self.file(
+            head + "  ends fan\n  path polyline\n    0 0.85 -0.26 0.435 0.663 89.9\n"
+            "    1.1 0.79 -0.02 0.627 0.419\n  end\nend\n"
+        )
         self.succeeds("relax", straight, "-o", self.folder / "grid.txt")
-        self.assertIn("sound: every yarn is a closed valid solid", self.succeeds("check", self.folder / "grid.txt").stdout)
+        self.assertIn(
+            "sound: every yarn is a closed valid solid", self.succeeds("check", self.folder / "grid.txt").stdout
+        )
         # One that is bent more tightly than it is thick folds, as a grid, too.
         bent = self.file(head + "  path\n    0 0 0\n    1 0 0\n    1.2 0.2 0\n    1 0.4 0\n    0 0.4 0\n  end\nend\n")
         self.succeeds("convert", bent, "-o", self.folder / "bent.igs")
@@ -241,7 +256,10 @@ class NoSolution(Relaxing):
         return message
 
     def test_through_each_others_middle(self):
-        self.judge(HEAD + along_x(0) + along_y(0), r"yarns 'a' and 'b' cannot be moved apart.*each other's middle at \(0, 0, 0\)")
+        self.judge(
+            HEAD + along_x(0) + along_y(0),
+            r"yarns 'a' and 'b' cannot be moved apart.*each other's middle at \(0, 0, 0\)",
+        )
 
     def test_nearly_through_each_others_middle(self):
         self.judge(HEAD + along_x(0) + along_y(0.05), "'a' and 'b'")
@@ -256,8 +274,14 @@ class NoSolution(Relaxing):
     def test_a_gap_that_the_cloth_has_no_room_for(self):
         """Either the neighbours stand in the way, or what has to stay as it is."""
         jammed = HEAD + "weave\n  warp t 3 pitch 1.75\n  weft t 3 pitch 1.75\n  draft plain\nend\n"
-        self.judge(jammed, r"cannot be moved apart: (the yarns are jammed|.*yarn '\w+' would change by .* allowed)", "--gap", "0.4",
-                   "--as-published", commands=["relax"])
+        self.judge(
+            jammed,
+            r"cannot be moved apart: (the yarns are jammed|.*yarn '\w+' would change by .* allowed)",
+            "--gap",
+            "0.4",
+            "--as-published",
+            commands=["relax"],
+        )
 
     def test_sections_would_vanish(self):
         self.judge(CROSSING, "section would vanish", "--gap", "0.95")
@@ -293,7 +317,9 @@ class Words(Relaxing):
 
     def test_limits_hold(self):
         """A cloth that takes longer than it may."""
-        source = self.file("fabric 1\nthread t\n  diameter 0.2\nend\nknit jersey\n  thread t\n  courses 60\n  wales 60\nend\n")
+        source = self.file(
+            "fabric 1\nthread t\n  diameter 0.2\nend\nknit jersey\n  thread t\n  courses 60\n  wales 60\nend\n"
+        )
         message = self.fails(1, "relax", source, "--as-published", "-o", self.out, "--timeout", "0.5")
         self.assertIn("--timeout", message)
         self.assertFalse(self.out.exists())

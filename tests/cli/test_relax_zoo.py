@@ -15,8 +15,9 @@ THREAD = "fabric 1\nthread t\n  {}\nend\n"
 
 
 def weave(section, pitch, draft, more="", count=4):
-    return THREAD.format(section) + (f"weave\n  warp t {count} pitch {pitch}\n  weft t {count} pitch {pitch}\n"
-                                     f"  draft {draft}\n  {more}\nend\n")
+    return THREAD.format(section) + (
+        f"weave\n  warp t {count} pitch {pitch}\n  weft t {count} pitch {pitch}\n" f"  draft {draft}\n  {more}\nend\n"
+    )
 
 
 # Round yarns of 0.4 on sines of amplitude 0.205 are free from a pitch of 0.7887 on (by bisection with `check`).
@@ -26,7 +27,10 @@ FABRICS = {
     "jersey": (SAMPLES / "jersey.txt").read_text(),  # 6 courses by 4 wales
     "rib": (SAMPLES / "knit_rib_1x1.txt").read_text(),
     # The sample is free; with less room its loops overlap.
-    "tricot": (SAMPLES / "warpknit_tricot.txt").read_text().replace("pitch 0.9", "pitch 0.55").replace("pitch 0.6", "pitch 0.47"),
+    "tricot": (SAMPLES / "warpknit_tricot.txt")
+    .read_text()
+    .replace("pitch 0.9", "pitch 0.55")
+    .replace("pitch 0.6", "pitch 0.47"),
     "satin": (SAMPLES / "warpknit_satin.txt").read_text(),
     "queens_cord": (SAMPLES / "warpknit_queens-cord.txt").read_text(),
     "twill": weave("section circle 0.4", 0.9 * FREE_TWILL_PITCH, "twill 2/2", "profile sine 0.205"),

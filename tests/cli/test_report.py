@@ -21,12 +21,26 @@ class Report(Case):
         return json.loads(self.path.read_text())
 
     def test_fields(self):
-        self.fails(1, "convert", GRID, BAD / "misspelt.txt", "nowhere.txt", "--to", "iges", "-o", f"{self.out}/", "--report",
-                   self.path)
+        self.fails(
+            1,
+            "convert",
+            GRID,
+            BAD / "misspelt.txt",
+            "nowhere.txt",
+            "--to",
+            "iges",
+            "-o",
+            f"{self.out}/",
+            "--report",
+            self.path,
+        )
         report = self.report()
         self.assertEqual(list(report), ["selvage", "libraries", "started", "seconds", "ok", "counts", "inputs"])
         self.assertRegex(report["selvage"], r"^\d+\.\d+\.\d+\S*$")
-        self.assertEqual(sorted(report["libraries"]), ["cgal", "eigen", "embree", "fmt", "hdf5", "muparser", "occt", "png", "pugixml", "tetgen", "zlib"])
+        self.assertEqual(
+            sorted(report["libraries"]),
+            ["cgal", "eigen", "embree", "fmt", "hdf5", "muparser", "occt", "png", "pugixml", "tetgen", "zlib"],
+        )
         self.assertFalse(report["ok"])
         self.assertEqual(report["counts"], {"inputs": 3, "done": 1, "failed": 2, "skipped": 0})
         good, bad, missing = report["inputs"]
@@ -42,14 +56,14 @@ class Report(Case):
         for absent in ("overlaps", "min_gap", "mesh"):
             self.assertNotIn(absent, good)
         self.assertGreater(good["creo_absolute_accuracy"], 0)
-        written, = good["outputs"]
+        (written,) = good["outputs"]
         data = (self.out / "plain4_grid.igs").read_bytes()
         self.assertEqual((written["path"], written["format"]), (f"{self.out}/plain4_grid.igs", "iges"))
         self.assertEqual((written["bytes"], written["sha256"]), (len(data), hashlib.sha256(data).hexdigest()))
         self.assertEqual(written["entities"]["128"], 12)
         self.assertEqual((bad["ok"], missing["ok"]), (False, False))
         self.assertNotIn("outputs", bad)
-        message, = bad["messages"]
+        (message,) = bad["messages"]
         self.assertEqual((message["severity"], message["where"]), ("error", f"{BAD}/misspelt.txt:3:3"))
         self.assertIn("did you mean", message["text"])
         self.assertEqual(missing["messages"][0]["where"], "nowhere.txt")
@@ -80,7 +94,22 @@ class Report(Case):
     def test_mesh(self):
         self.succeeds("mesh", PATH, "-o", self.folder / "x.inp", "--report", self.path)
         entry = self.report()["inputs"][0]
-        self.assertEqual(sorted(entry["mesh"]), ["below_target", "first_percentile_dihedral", "in_wedges", "max_aspect", "min_dihedral", "nodes", "regions", "tets", "volume", "volume_error", "worst"])
+        self.assertEqual(
+            sorted(entry["mesh"]),
+            [
+                "below_target",
+                "first_percentile_dihedral",
+                "in_wedges",
+                "max_aspect",
+                "min_dihedral",
+                "nodes",
+                "regions",
+                "tets",
+                "volume",
+                "volume_error",
+                "worst",
+            ],
+        )
         self.assertGreater(entry["mesh"]["tets"], 100)
         exact = sum(yarn["volume"] for yarn in entry["yarns"])
         self.assertAlmostEqual(entry["mesh"]["volume_error"], abs(entry["mesh"]["volume"] - exact) / exact, places=6)
@@ -110,19 +139,24 @@ class Report(Case):
 
     def test_the_box_is_that_of_the_surface(self):
         # Straight yarns along x: across it a section of these sizes.
-        for section, across, up, places in (("ellipse 0.6 0.4", 0.3, 0.2, 3), ("circle 0.5", 0.25, 0.25, 3),
-                                            ("loop7 0.4", 0.2, 0.2, 1.9)):
+        for section, across, up, places in (
+            ("ellipse 0.6 0.4", 0.3, 0.2, 3),
+            ("circle 0.5", 0.25, 0.25, 3),
+            ("loop7 0.4", 0.2, 0.2, 1.9),
+        ):
             source = self.folder / "straight.txt"
-            source.write_text(f"fabric 1\nunits mm\nthread t\n  section {section}\nend\n"
-                              "yarn y t\n  path\n    0 0 0\n    10 0 0\n  end\nend\n")
+            source.write_text(
+                f"fabric 1\nunits mm\nthread t\n  section {section}\nend\n"
+                "yarn y t\n  path\n    0 0 0\n    10 0 0\n  end\nend\n"
+            )
             found = re.search(r"within \((.*)\) and \((.*)\)", self.succeeds("info", source).stdout)
             low, high = ([float(x) for x in found[k].split(",")] for k in (1, 2))
             for value, wanted in zip(low + high, (0, -across, -up, 10, across, up)):
-                self.assertLess(abs(value - wanted), 10 ** -places, section)
+                self.assertLess(abs(value - wanted), 10**-places, section)
 
     def test_a_crashed_input_is_in_the_report(self):
         self.fails(1, "convert", GRID, "-o", self.folder / "x.igs", "--report", self.path, "--memory", "1")
-        entry, = self.report()["inputs"]
+        (entry,) = self.report()["inputs"]
         self.assertFalse(entry["ok"])
         self.assertEqual(entry["messages"][0]["severity"], "error")
 
@@ -182,11 +216,16 @@ class Resume(Case):
 
     def test_a_report_of_something_else(self):
         self.path.write_text("[1, 2]")
-        self.assertIn("not a report", self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume"))
-        for value, place in (('{"path": 3}', r"inputs\[0\]\.path is a number"), ("4", "its input 1 has no path"),
-                             ('{"path": "a.txt", "ok": null}', r"inputs\[0\]\.ok is null"),
-                             ('{"path": "a.txt", "ok": true, "outputs": 7}', r"inputs\[0\]\.outputs is a number, where a list"),
-                             ("[" * 60000 + "]" * 60000, "nested more than 32 deep")):
+        self.assertIn(
+            "not a report", self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume")
+        )
+        for value, place in (
+            ('{"path": 3}', r"inputs\[0\]\.path is a number"),
+            ("4", "its input 1 has no path"),
+            ('{"path": "a.txt", "ok": null}', r"inputs\[0\]\.ok is null"),
+            ('{"path": "a.txt", "ok": true, "outputs": 7}', r"inputs\[0\]\.outputs is a number, where a list"),
+            ("[" * 60000 + "]" * 60000, "nested more than 32 deep"),
+        ):
             self.path.write_text('{"inputs": [%s]}' % value)
             message = self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume")
             self.assertRegex(message, f"^{self.path}: error: this is not a report .*{place}")
@@ -215,7 +254,10 @@ class FromOutside(Case):
 
     def refused(self, content, pattern):
         self.path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        for arguments in (("merge", self.path, "-o", self.folder / "all.json"), ("html", self.path, "-o", self.folder / "page.html")):
+        for arguments in (
+            ("merge", self.path, "-o", self.folder / "all.json"),
+            ("html", self.path, "-o", self.folder / "page.html"),
+        ):
             message = self.fails(1, "report", *arguments)
             self.assertRegex(message, f"^{self.path}: error: {pattern}")
             self.assertEqual(message.count("\n"), 1, message)
@@ -226,29 +268,40 @@ class FromOutside(Case):
             for start, end in (("[", "]"), ('{"a":', "}")):
                 nested = depth * start + "0" + depth * end
                 for content in (nested, '{"inputs": [{"path": "a", "more": %s}]}' % nested, depth * start):
-                    self.refused(content, "this is not a report of selvage .*: lists and objects are nested more than 32 deep")
+                    self.refused(
+                        content, "this is not a report of selvage .*: lists and objects are nested more than 32 deep"
+                    )
         # The program itself nests less.
         self.path.write_text('{"inputs": [{"path": "a", "more": %s0%s}]}' % (28 * "[", 28 * "]"))
         self.succeeds("report", "merge", self.path, "-o", "-")
 
     def test_no_json(self):
-        for content, place in (("", "it is no JSON at line 1, column 1"), ('{"inputs": [\n  {"path": "a"},]}', "it is no JSON at line 2, column 17"),
-                               (b'{"inputs": [{"path": "\xff"}]}', "it is no JSON at line 1, column 2[23]"), ('{"inputs": []} x', "it is no JSON"),
-                               ('{"inputs": [{"path": "a", "seconds": 1e999}]}', "a number is too large at line 1"),
-                               ('{"inputs": [], "inputs": []}', "an object has two members 'inputs'"),
-                               ('{"inputs": [{"path": "a\\u0000b"}]}', r"inputs\[0\]\.path is a text, where"),
-                               ('{"inputs": [{"path": ""}]}', "its input 1 has no path"),
-                               ('{"inputs": [], "seconds": 1e300}', "seconds is a number, where a number from 0 to 1e15 is needed"),
-                               ('{"inputs": [], "counts": {"done": -1}}', r"counts\.done is a number, where a whole number from 0"),
-                               ('{"ok": true}', "it has no inputs"), ("3", "it is a number, where an object is needed")):
+        for content, place in (
+            ("", "it is no JSON at line 1, column 1"),
+            ('{"inputs": [\n  {"path": "a"},]}', "it is no JSON at line 2, column 17"),
+            (b'{"inputs": [{"path": "\xff"}]}', "it is no JSON at line 1, column 2[23]"),
+            ('{"inputs": []} x', "it is no JSON"),
+            ('{"inputs": [{"path": "a", "seconds": 1e999}]}', "a number is too large at line 1"),
+            ('{"inputs": [], "inputs": []}', "an object has two members 'inputs'"),
+            ('{"inputs": [{"path": "a\\u0000b"}]}', r"inputs\[0\]\.path is a text, where"),
+            ('{"inputs": [{"path": ""}]}', "its input 1 has no path"),
+            ('{"inputs": [], "seconds": 1e300}', "seconds is a number, where a number from 0 to 1e15 is needed"),
+            ('{"inputs": [], "counts": {"done": -1}}', r"counts\.done is a number, where a whole number from 0"),
+            ('{"ok": true}', "it has no inputs"),
+            ("3", "it is a number, where an object is needed"),
+        ):
             with self.subTest(content):
                 self.refused(content, f"this is not a report of selvage .*: {place}")
 
     def test_wrong_types(self):
         """Every member of reports of all kinds, with a value of every other type."""
         seen = set()
-        for arguments in (("info", ROOT / "samples" / "plain_by_params.txt"), ("check", GRID, "--reach", "1"), ("mesh", PATH, "-o", self.folder / "x.inp"),
-                          ("convert", RING, BAD / "misspelt.txt", "--to", "iges", "-o", self.out)):
+        for arguments in (
+            ("info", ROOT / "samples" / "plain_by_params.txt"),
+            ("check", GRID, "--reach", "1"),
+            ("mesh", PATH, "-o", self.folder / "x.inp"),
+            ("convert", RING, BAD / "misspelt.txt", "--to", "iges", "-o", self.out),
+        ):
             run(*arguments, "--report", self.path)
             report = json.loads(self.path.read_text())
             for place in members(report):
@@ -262,7 +315,12 @@ class FromOutside(Case):
                 right = holder[place[-1]] if place else report
                 for value in (None, True, 5.5, "a text", [], {}):
                     kinds = (bool, (int, float), str, list, dict)
-                    if any(isinstance(value, kind) and isinstance(right, kind) and isinstance(value, bool) == isinstance(right, bool) for kind in kinds):
+                    if any(
+                        isinstance(value, kind)
+                        and isinstance(right, kind)
+                        and isinstance(value, bool) == isinstance(right, bool)
+                        for kind in kinds
+                    ):
                         continue
                     if place:
                         holder[place[-1]] = value
@@ -271,7 +329,10 @@ class FromOutside(Case):
                     with self.subTest(place=place, value=value):
                         self.path.write_text(json.dumps(wrong))
                         message = self.fails(1, "report", "merge", self.path, "-o", self.folder / "all.json")
-                        self.assertRegex(message, rf"error: this is not a report of selvage .*: {in_words(place) or 'it'} is .*, where .* is needed$")
+                        self.assertRegex(
+                            message,
+                            rf"error: this is not a report of selvage .*: {in_words(place) or 'it'} is .*, where .* is needed$",
+                        )
         self.assertGreater(len(seen), 60)
 
     def test_a_page_is_not_larger_than_its_report_makes_it(self):
@@ -279,9 +340,13 @@ class FromOutside(Case):
         rows = {f"r{k}": {f"k{k}": 1} for k in range(5000)}
         empty = {f"r{k}": {} for k in range(10000)}
         wide = {"r": {f"k{k}": 1 for k in range(10000)}}
-        for content in ([{"path": "a", "sheets": {"weave": {"threads": rows, "systems": rows}}}], [{"path": "a", "sheets": {"weave": {"threads": empty}}}],
-                        [{"path": "a", "sheets": {"weave": {"threads": wide}}}], [{"path": "a"}] * 10000,
-                        [{"path": "a", "messages": [{"severity": "error", "text": "x"}] * 3000}]):
+        for content in (
+            [{"path": "a", "sheets": {"weave": {"threads": rows, "systems": rows}}}],
+            [{"path": "a", "sheets": {"weave": {"threads": empty}}}],
+            [{"path": "a", "sheets": {"weave": {"threads": wide}}}],
+            [{"path": "a"}] * 10000,
+            [{"path": "a", "messages": [{"severity": "error", "text": "x"}] * 3000}],
+        ):
             self.path.write_text(json.dumps({"inputs": content}))
             page = self.folder / "page.html"
             self.succeeds("report", "html", self.path, "-o", page, "--no-pictures")

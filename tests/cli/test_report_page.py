@@ -10,8 +10,10 @@ import unittest
 from program import BAD, Case, GRID, PATH, RING, SAMPLES, files_below
 from test_view import decode
 
-OVERLAPPING = ("fabric 1\nthread t\n diameter 1\nend\nyarn a t\n path\n -3 0 0\n 3 0 0\n end\nend\n"
-               "yarn b t\n path\n 0 -3 0.9\n 0 3 0.9\n end\nend\n")
+OVERLAPPING = (
+    "fabric 1\nthread t\n diameter 1\nend\nyarn a t\n path\n -3 0 0\n 3 0 0\n end\nend\n"
+    "yarn b t\n path\n 0 -3 0.9\n 0 3 0.9\n end\nend\n"
+)
 NASTY = 'a<b onclick="alert(1)">&amp;.txt'
 VOID = {"meta", "link", "input", "img", "br"}
 
@@ -84,16 +86,30 @@ class Pages(Base):
         shutil.copy(PATH, folder / "well.txt")
         (folder / NASTY).write_text(OVERLAPPING)
         shutil.copy(BAD / "misspelt.txt", folder / "misspelt.txt")
-        (folder / "warned.txt").write_text("fabric 1\nthread t\n tex 30\n density 1.52\n packing 0.75\n diameter 0.0912\nend\n"
-                                           "yarn a t\n path\n 0 0 0\n 1 0 0\n end\nend\n")
-        self.fails(1, "check", folder / "well.txt", folder / "warned.txt", folder / NASTY, folder / "misspelt.txt", folder / "nowhere.txt",
-                   "--report", self.report, *options)
+        (folder / "warned.txt").write_text(
+            "fabric 1\nthread t\n tex 30\n density 1.52\n packing 0.75\n diameter 0.0912\nend\n"
+            "yarn a t\n path\n 0 0 0\n 1 0 0\n end\nend\n"
+        )
+        self.fails(
+            1,
+            "check",
+            folder / "well.txt",
+            folder / "warned.txt",
+            folder / NASTY,
+            folder / "misspelt.txt",
+            folder / "nowhere.txt",
+            "--report",
+            self.report,
+            *options,
+        )
         return folder
 
     def test_errors_first(self):
         folder = self.several()
         page = self.page(options=("--no-pictures",))
-        self.assertEqual([cell["text"] for cell in page.cells("Status")], ["failed", "failed", "defect", "warnings", "ok"])
+        self.assertEqual(
+            [cell["text"] for cell in page.cells("Status")], ["failed", "failed", "defect", "warnings", "ok"]
+        )
         names = [f"{folder}/{name}" for name in ("misspelt.txt", "nowhere.txt", NASTY, "warned.txt", "well.txt")]
         self.assertEqual([cell["@data-value"] for cell in page.cells("Input")], names)
         for cell, name in zip(page.cells("Input"), names):
@@ -105,7 +121,9 @@ class Pages(Base):
     def test_names_and_messages_are_text(self):
         self.several()
         report = json.loads(self.report.read_text())
-        report["inputs"][0]["messages"] = [{"severity": "error", "where": "<i>&", "text": "</td><script>alert(1)</script>\"'"}]
+        report["inputs"][0]["messages"] = [
+            {"severity": "error", "where": "<i>&", "text": "</td><script>alert(1)</script>\"'"}
+        ]
         self.report.write_text(json.dumps(report))
         page = self.page(options=("--no-pictures",))
         self.assertNotIn("<b onclick", self.text)
@@ -118,9 +136,13 @@ class Pages(Base):
         page = self.page(options=("--no-pictures",))
         for row in page.rows:
             entry = entries[row[page.column("Input")]["@data-value"]]
-            for head, value in (("Yarns", entry.get("yarn_count")), ("Least gap, mm", entry.get("min_gap")), ("Seconds", entry["seconds"]),
-                                ("Overlaps", len(entry["overlaps"]) if "overlaps" in entry else None),
-                                ("Deepest, mm", entry["overlaps"][0]["depth"] if entry.get("overlaps") else None)):
+            for head, value in (
+                ("Yarns", entry.get("yarn_count")),
+                ("Least gap, mm", entry.get("min_gap")),
+                ("Seconds", entry["seconds"]),
+                ("Overlaps", len(entry["overlaps"]) if "overlaps" in entry else None),
+                ("Deepest, mm", entry["overlaps"][0]["depth"] if entry.get("overlaps") else None),
+            ):
                 cell = row[page.column(head)]
                 if value is None:
                     self.assertEqual((cell["text"], cell.get("@data-value")), ("", None), head)
@@ -138,9 +160,13 @@ class Pages(Base):
         self.succeeds("info", source, "--report", self.report)
         sheet = json.loads(self.report.read_text())["inputs"][0]["sheets"]["weave"]
         page = self.page(options=("--no-pictures",))
-        row, = page.rows
-        for head, value in (("Mass, g/m²", sheet["mass"]), ("Thickness, mm", sheet["thickness"]), ("Cover, %", 100 * sheet["cover"]),
-                            ("Fibres fill, %", 100 * sheet["fibre_fraction"])):
+        (row,) = page.rows
+        for head, value in (
+            ("Mass, g/m²", sheet["mass"]),
+            ("Thickness, mm", sheet["thickness"]),
+            ("Cover, %", 100 * sheet["cover"]),
+            ("Fibres fill, %", 100 * sheet["fibre_fraction"]),
+        ):
             self.assertAlmostEqual(float(row[page.column(head)]["@data-value"]), value, places=9)
         text = row[page.column("Input")]["text"]
         for word in ("Data sheet", "weave", "warp", "weft", "crimp", "cover factor", "yarn fraction"):
@@ -151,7 +177,10 @@ class Pages(Base):
         self.succeeds("convert", GRID, "-o", f"{self.out}/", "--report", self.report)
         page = self.page(options=("--no-pictures",))
         self.assertEqual(page.rows[0][page.column("Files")]["text"], "2")
-        self.assertIn(f"{self.out}/plain4_grid.igs, {(self.out / 'plain4_grid.igs').stat().st_size} bytes", page.rows[0][page.column("Input")]["text"])
+        self.assertIn(
+            f"{self.out}/plain4_grid.igs, {(self.out / 'plain4_grid.igs').stat().st_size} bytes",
+            page.rows[0][page.column("Input")]["text"],
+        )
 
     def test_it_can_be_sorted(self):
         self.several()
@@ -169,22 +198,35 @@ class Pages(Base):
         (folder / "warned.txt").write_text((folder / "warned.txt").read_text() + "# changed\n")
         page = self.page()
         cells = [row[0] for row in page.rows]
-        for cell, note in zip(cells, ("unknown|did you mean", "the file is not there", None, "the file has changed since the report", None)):
+        for cell, note in zip(
+            cells,
+            ("unknown|did you mean", "the file is not there", None, "the file has changed since the report", None),
+        ):
             if note:
                 self.assertEqual(cell["images"], [])
                 self.assertRegex(cell["text"], f"^No picture: .*({note})")
                 continue
-            image, = cell["images"]
+            (image,) = cell["images"]
             start = "data:image/png;base64,"
             self.assertTrue(image["src"].startswith(start))
-            width, height, rows = decode(base64.b64decode(image["src"][len(start):], validate=True))
+            width, height, rows = decode(base64.b64decode(image["src"][len(start) :], validate=True))
             self.assertEqual((width, height), (200, 150))
             self.assertGreater(sum(pixel != (255, 255, 255) for row in rows for pixel in row), 2000)
         self.assertEqual(cells[2]["images"][0]["alt"], f"{folder}/{NASTY}")
 
     def test_variants_are_drawn_as_they_were(self):
-        self.succeeds("sweep", SAMPLES / "plain_by_params.txt", "--set", "sett=20,40", "--csv", self.folder / "x.csv", "--report", self.report,
-                      "--do", "info")
+        self.succeeds(
+            "sweep",
+            SAMPLES / "plain_by_params.txt",
+            "--set",
+            "sett=20,40",
+            "--csv",
+            self.folder / "x.csv",
+            "--report",
+            self.report,
+            "--do",
+            "info",
+        )
         page = self.page()
         images = [row[0]["images"][0]["src"] for row in page.rows]
         self.assertEqual(len(set(images)), 2)
@@ -218,15 +260,22 @@ class Merge(Base):
         inputs = [GRID, PATH, RING]
         shards = [self.folder / f"{k}.json" for k in range(2)]
         for k, shard in enumerate(shards):
-            self.succeeds("convert", *inputs, "--to", "iges", "-o", f"{self.out}/", "--shard", f"{k}/2", "--report", shard)
+            self.succeeds(
+                "convert", *inputs, "--to", "iges", "-o", f"{self.out}/", "--shard", f"{k}/2", "--report", shard
+            )
         self.succeeds("convert", *inputs, "--to", "iges", "-o", f"{self.out}/", "--report", self.report)
         self.succeeds("report", "merge", *shards, "-o", self.folder / "all.json")
         whole, merged = (json.loads((self.folder / name).read_text()) for name in ("report.json", "all.json"))
         self.assertEqual(list(merged), list(whole))
         for key in ("selvage", "libraries", "ok", "counts"):
             self.assertEqual(merged[key], whole[key], key)
+
         def without_times(report):
-            return [{key: value for key, value in entry.items() if key not in ("seconds", "outputs")} for entry in report["inputs"]]
+            return [
+                {key: value for key, value in entry.items() if key not in ("seconds", "outputs")}
+                for entry in report["inputs"]
+            ]
+
         self.assertEqual(without_times(merged), without_times(whole))
         parts = [json.loads(shard.read_text()) for shard in shards]
         self.assertAlmostEqual(merged["seconds"], sum(part["seconds"] for part in parts))
@@ -245,22 +294,34 @@ class Merge(Base):
 
 class Refusals(Base):
     def test_no_reports(self):
-        for text, words in (("[1, 2]", "not a report"), ('{"a": 1}', "not a report"), ("{", "not a report"), ("", "not a report"),
-                            ('{"inputs": 3}', "not a report"), ('{"inputs": [{"path": "a.txt"}, {"ok": true}]}', "its input 2 has no path"),
-                            ('{"inputs": [4]}', "its input 1 has no path")):
+        for text, words in (
+            ("[1, 2]", "not a report"),
+            ('{"a": 1}', "not a report"),
+            ("{", "not a report"),
+            ("", "not a report"),
+            ('{"inputs": 3}', "not a report"),
+            ('{"inputs": [{"path": "a.txt"}, {"ok": true}]}', "its input 2 has no path"),
+            ('{"inputs": [4]}', "its input 1 has no path"),
+        ):
             self.report.write_text(text)
             for action, target in (("html", "x.html"), ("merge", "x.json")):
                 message = self.fails(1, "report", action, self.report, "-o", self.folder / target)
                 self.assertIn(f"{self.report}: error: ", message)
                 self.assertIn(words, message)
-        self.assertIn("nowhere.json", self.fails(1, "report", "html", self.folder / "nowhere.json", "-o", self.folder / "x.html"))
+        self.assertIn(
+            "nowhere.json", self.fails(1, "report", "html", self.folder / "nowhere.json", "-o", self.folder / "x.html")
+        )
         self.assertEqual(list(files_below(self.folder)), ["report.json"])
 
     def test_words(self):
         self.report.write_text('{"inputs": []}')
-        self.assertIn("'pdf' is not merge or html", self.fails(2, "report", "pdf", self.report, "-o", self.folder / "x.html"))
+        self.assertIn(
+            "'pdf' is not merge or html", self.fails(2, "report", "pdf", self.report, "-o", self.folder / "x.html")
+        )
         self.assertIn("ends with .html", self.fails(2, "report", "html", self.report, "-o", self.folder / "x.json"))
-        self.assertIn("selvage report html", self.fails(2, "report", "merge", self.report, "-o", self.folder / "x.html"))
+        self.assertIn(
+            "selvage report html", self.fails(2, "report", "merge", self.report, "-o", self.folder / "x.html")
+        )
         self.assertIn("--output", self.fails(2, "report", "html", self.report))
         self.assertIn("REPORT", self.fails(2, "report", "html", "-o", self.folder / "x.html"))
 

@@ -20,8 +20,10 @@ class Trips(Case):
         report = self.folder / "report.json"
         done = run("roundtrip", *arguments, "--report", report, "--no-progress")
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return [{trip["format"]: trip for trip in entry.get("roundtrips", [])}
-                for entry in json.loads(report.read_text())["inputs"]], done
+        return [
+            {trip["format"]: trip for trip in entry.get("roundtrips", [])}
+            for entry in json.loads(report.read_text())["inputs"]
+        ], done
 
     def junit(self, code, *arguments):
         path = self.folder / "junit.xml"
@@ -30,16 +32,18 @@ class Trips(Case):
         root = ElementTree.parse(path).getroot()
         suite = root.find("testsuite")
         cases = suite.findall("testcase")
-        for name, count in (("tests", len(cases)), ("failures", len(suite.findall("testcase/failure"))),
-                            ("errors", len(suite.findall("testcase/error"))),
-                            ("skipped", len(suite.findall("testcase/skipped")))):
+        for name, count in (
+            ("tests", len(cases)),
+            ("failures", len(suite.findall("testcase/failure"))),
+            ("errors", len(suite.findall("testcase/error"))),
+            ("skipped", len(suite.findall("testcase/skipped"))),
+        ):
             self.assertEqual(int(suite.get(name)), count, name)
             self.assertEqual(int(root.get(name)), count, name)
         return cases, done
 
     def test_nothing_is_lost(self):
-        inputs = (GRID, PATH, RING, SAMPLES / "jersey.txt", SAMPLES / "weave_racetrack.txt",
-                  SAMPLES / "sections.txt")
+        inputs = (GRID, PATH, RING, SAMPLES / "jersey.txt", SAMPLES / "weave_racetrack.txt", SAMPLES / "sections.txt")
         found, done = self.trips(0, *inputs)
         for path, trips in zip(inputs, found):
             info = json.loads(run("info", path, "--json").stdout)["inputs"][0]
@@ -73,10 +77,15 @@ class Trips(Case):
         strange = self.folder / "a & <b> \"c\" 'd' \u00e9.txt"
         strange.write_text(pathlib.Path(GRID).read_text())
         cases, _ = self.junit(1, strange, BAD / "nan.txt", self.folder / "missing.txt", "--to", "iges,txt")
-        self.assertEqual([(c.get("classname"), c.get("name"), [x.tag for x in c]) for c in cases],
-                         [(str(strange), "iges", []), (str(strange), "txt", []),
-                          (str(BAD / "nan.txt"), "roundtrip", ["error"]),
-                          (str(self.folder / "missing.txt"), "roundtrip", ["error"])])
+        self.assertEqual(
+            [(c.get("classname"), c.get("name"), [x.tag for x in c]) for c in cases],
+            [
+                (str(strange), "iges", []),
+                (str(strange), "txt", []),
+                (str(BAD / "nan.txt"), "roundtrip", ["error"]),
+                (str(self.folder / "missing.txt"), "roundtrip", ["error"]),
+            ],
+        )
         self.assertIn("nan", cases[2][0].get("message"))
         self.assertIn("No such file", cases[3][0].text)
 
@@ -102,7 +111,11 @@ class Trips(Case):
         for sign in (signal.SIGINT, signal.SIGTERM):
             running = start("roundtrip", large, "--no-progress", env=env)
             deadline = time.monotonic() + 60
-            while not any(path.is_file() for path in place.rglob("*")) and running.poll() is None and time.monotonic() < deadline:
+            while (
+                not any(path.is_file() for path in place.rglob("*"))
+                and running.poll() is None
+                and time.monotonic() < deadline
+            ):
                 time.sleep(0.01)
             self.assertTrue(any(place.iterdir()), "there is a folder while it runs")
             running.send_signal(sign)
@@ -113,7 +126,9 @@ class Trips(Case):
 
     def test_places_that_cannot_be_written(self):
         self.assertIn("Is a directory", self.fails(2, "roundtrip", GRID, "--junit", self.folder))
-        self.assertIn("temporary folder", self.fails(1, "roundtrip", GRID, env=environment(TMPDIR=str(self.folder / "no"))))
+        self.assertIn(
+            "temporary folder", self.fails(1, "roundtrip", GRID, env=environment(TMPDIR=str(self.folder / "no")))
+        )
 
 
 if __name__ == "__main__":

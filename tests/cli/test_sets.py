@@ -98,7 +98,9 @@ class Writing(Set):
     def test_an_input_is_never_replaced_by_a_part(self):
         # The second input's file has the name that the first part of the first one's would have.
         shutil.copy(self.text, self.folder / "w.1.txt")
-        message = self.fails(1, "convert", self.text, self.folder / "w.1.txt", "--to", "iges", "-o", self.out, "--iges-lines", LINES)
+        message = self.fails(
+            1, "convert", self.text, self.folder / "w.1.txt", "--to", "iges", "-o", self.out, "--iges-lines", LINES
+        )
         self.assertRegex(message, r"w\.igs' does not fit into one file, and its file 1, '.*w\.1\.igs', would replace")
         self.assertEqual(self.names(), ["w.1.1.igs", "w.1.2.igs"] + (["w.1.3.igs"] if len(self.names()) > 2 else []))
 
@@ -115,7 +117,9 @@ class Writing(Set):
         self.assertEqual(names[:2], ["warp_1.part1", "warp_1.part2"])
         self.assertEqual(len({name.split(".")[0] for name in names}), 8)
         # The pieces are closed, and that two of them touch is no defect.
-        self.assertIn("every yarn is a closed valid solid, no two overlap", self.succeeds("check", self.out / "w.1.igs").stdout)
+        self.assertIn(
+            "every yarn is a closed valid solid, no two overlap", self.succeeds("check", self.out / "w.1.igs").stdout
+        )
 
 
 class Reading(Set):

@@ -37,35 +37,79 @@ def hidden(lanes, period):
 # Of each cloth: a piece with a border round the repeat; low corner and size of what is measured (mm); the systems in
 # the order of the file, as (name, axis, tex, fibre density, how many yarns stand in the file).
 CLOTHS = {
-    "denim": (larger("weave_denim", ("warp warp 8", "warp warp 12"), ("weft weft 8", "weft weft 12")),
-              (4 * 0.588, 4 * 0.3846), (4 * 0.588, 4 * 0.3846),
-              [("warp", 0, 590.5412 / 7, 1.52, 12), ("weft", 1, 590.5412 / 6, 1.52, 12)]),
-    "glass": (larger("weave_glass7628", ("warp ec9 6", "warp ec9 8"), ("weft ec9 4", "weft ec9 8")),
-              (3 * 0.747, 3 * 0.577), (2 * 0.747, 2 * 0.577),
-              [("warp", 0, 68, 2.54, 8), ("weft", 1, 68, 2.54, 8)]),
-    "satin": (larger("weave_satin5", ("  diameter 0.2", "  tex 40\n  density 1.3\n  diameter 0.25"),
-                     ("ground 5 pitch 0.36", "ground 15 pitch 0.44"), ("silk 5 pitch 0.36", "silk 15 pitch 0.5")),
-              (5 * 0.5, 5 * 0.44), (5 * 0.5, 5 * 0.44), [("warp", 0, 40, 1.3, 15), ("weft", 1, 40, 1.3, 15)]),
-    "twill": (larger("weave_twill22", ("  diameter 0.4", "  tex 90\n  material wool\n  diameter 0.4"),
-                     ("warp  wool 8 pitch 0.8", "warp  wool 12 pitch 0.7"), ("weft  wool 8", "weft  wool 12")),
-              (4 * 0.8, 4 * 0.7), (4 * 0.8, 4 * 0.7), [("warp", 0, 90, 1.31, 12), ("weft", 1, 90, 1.31, 12)]),
-    "jersey": (larger("knit_jersey_density", ("courses 6", "courses 16"), ("wales   5", "wales 16")),
-               (8 * 0.7692308, 8 * 0.5555556), (0.7692308, 0.5555556), [("course", 0, 20, 1.52, 16)]),
-    "rib": (larger("knit_rib_1x1", ("courses 4", "courses 14 pitch 1"), ("wales   4", "wales 16 pitch 1.1")),
-            (8 * 1.1, 7 * 1.0), (2 * 1.1, 1.0), [("course", 0, 30, 1.52, 14)]),
+    "denim": (
+        larger("weave_denim", ("warp warp 8", "warp warp 12"), ("weft weft 8", "weft weft 12")),
+        (4 * 0.588, 4 * 0.3846),
+        (4 * 0.588, 4 * 0.3846),
+        [("warp", 0, 590.5412 / 7, 1.52, 12), ("weft", 1, 590.5412 / 6, 1.52, 12)],
+    ),
+    "glass": (
+        larger("weave_glass7628", ("warp ec9 6", "warp ec9 8"), ("weft ec9 4", "weft ec9 8")),
+        (3 * 0.747, 3 * 0.577),
+        (2 * 0.747, 2 * 0.577),
+        [("warp", 0, 68, 2.54, 8), ("weft", 1, 68, 2.54, 8)],
+    ),
+    "satin": (
+        larger(
+            "weave_satin5",
+            ("  diameter 0.2", "  tex 40\n  density 1.3\n  diameter 0.25"),
+            ("ground 5 pitch 0.36", "ground 15 pitch 0.44"),
+            ("silk 5 pitch 0.36", "silk 15 pitch 0.5"),
+        ),
+        (5 * 0.5, 5 * 0.44),
+        (5 * 0.5, 5 * 0.44),
+        [("warp", 0, 40, 1.3, 15), ("weft", 1, 40, 1.3, 15)],
+    ),
+    "twill": (
+        larger(
+            "weave_twill22",
+            ("  diameter 0.4", "  tex 90\n  material wool\n  diameter 0.4"),
+            ("warp  wool 8 pitch 0.8", "warp  wool 12 pitch 0.7"),
+            ("weft  wool 8", "weft  wool 12"),
+        ),
+        (4 * 0.8, 4 * 0.7),
+        (4 * 0.8, 4 * 0.7),
+        [("warp", 0, 90, 1.31, 12), ("weft", 1, 90, 1.31, 12)],
+    ),
+    "jersey": (
+        larger("knit_jersey_density", ("courses 6", "courses 16"), ("wales   5", "wales 16")),
+        (8 * 0.7692308, 8 * 0.5555556),
+        (0.7692308, 0.5555556),
+        [("course", 0, 20, 1.52, 16)],
+    ),
+    "rib": (
+        larger("knit_rib_1x1", ("courses 4", "courses 14 pitch 1"), ("wales   4", "wales 16 pitch 1.1")),
+        (8 * 1.1, 7 * 1.0),
+        (2 * 1.1, 1.0),
+        [("course", 0, 30, 1.52, 14)],
+    ),
     # With a cell the cloth goes on beyond it; how far its loops are moved apart is then that of any endless piece.
-    "full cardigan": (larger("knit_full_cardigan", ("  diameter 0.5", "  tex 110\n  density 1.31\n  diameter 0.5"),
-                             ("courses 6", "courses 2 pitch 1.6"), ("wales   5", "wales 2 pitch 2.4"))
-                      + "cell 0 0 -2  4.8 3.2 2\nend\n",
-                      (0, 0), (2 * 2.4, 2 * 1.6), [("course", 0, 110, 1.31, 14)]),
-    "locknit": (larger("warpknit_locknit", ("wales   3", "wales 6"), ("courses 4", "courses 14")),
-                (3 * 0.9, 6 * 0.8), (0.9, 2 * 0.8), [("bar1", 1, 7.6, 1.38, 6), ("bar2", 1, 7.6, 1.38, 6)]),
-    "satin of bars": (larger("warpknit_satin", ("wales   4", "wales 9"), ("courses 6", "courses 14")),
-                      (4 * 0.9, 6 * 0.6), (0.9, 2 * 0.6), [("bar1", 1, 4.4, 1.14, 9), ("bar2", 1, 7.6, 1.38, 9)]),
-    "braid": (larger("braid_regular", ("length   9", "length 40")), (0, 0, 12), None,
-              [("braider", 2, 400, 1.5, 12)]),
-    "flat braid": (larger("braid_flat5", ("length   14", "length 40")), (12, 0), None,
-                   [("braider", 0, 800, 1.5, 5)]),
+    "full cardigan": (
+        larger(
+            "knit_full_cardigan",
+            ("  diameter 0.5", "  tex 110\n  density 1.31\n  diameter 0.5"),
+            ("courses 6", "courses 2 pitch 1.6"),
+            ("wales   5", "wales 2 pitch 2.4"),
+        )
+        + "cell 0 0 -2  4.8 3.2 2\nend\n",
+        (0, 0),
+        (2 * 2.4, 2 * 1.6),
+        [("course", 0, 110, 1.31, 14)],
+    ),
+    "locknit": (
+        larger("warpknit_locknit", ("wales   3", "wales 6"), ("courses 4", "courses 14")),
+        (3 * 0.9, 6 * 0.8),
+        (0.9, 2 * 0.8),
+        [("bar1", 1, 7.6, 1.38, 6), ("bar2", 1, 7.6, 1.38, 6)],
+    ),
+    "satin of bars": (
+        larger("warpknit_satin", ("wales   4", "wales 9"), ("courses 6", "courses 14")),
+        (4 * 0.9, 6 * 0.6),
+        (0.9, 2 * 0.6),
+        [("bar1", 1, 4.4, 1.14, 9), ("bar2", 1, 7.6, 1.38, 9)],
+    ),
+    "braid": (larger("braid_regular", ("length   9", "length 40")), (0, 0, 12), None, [("braider", 2, 400, 1.5, 12)]),
+    "flat braid": (larger("braid_flat5", ("length   14", "length 40")), (12, 0), None, [("braider", 0, 800, 1.5, 5)]),
 }
 
 
@@ -143,7 +187,7 @@ class Sheet(Case):
             self.near(sheet["cover"], k[0] + k[1] - k[0] * k[1], "cover")
 
     def measure_braid(self, sheet, tubes, low, _, systems):
-        (system, axis, tex, density, count), = systems
+        ((system, axis, tex, density, count),) = systems
         repeat = sheet["repeat_x"]
         length = volume = turn = width = 0
         reach = []
@@ -153,7 +197,9 @@ class Sheet(Case):
             length += of_it / 2
             volume += filled / 2
             middles = tube.middles[rows]
-            turn += abs(np.unwrap(np.arctan2(middles[:, 1], middles[:, 0]))[[0, -1]] @ [-1, 1]) / np.ptp(middles[:, axis])
+            turn += abs(np.unwrap(np.arctan2(middles[:, 1], middles[:, 0]))[[0, -1]] @ [-1, 1]) / np.ptp(
+                middles[:, axis]
+            )
             width += 2 * math.sqrt(tube.volumes.sum() / tube.steps.sum() / math.pi)
             points = tube.grid[rows].reshape(-1, 3)
             reach.append((points[:, 2], points[:, 1]) if axis == 0 else (np.hypot(points[:, 0], points[:, 1]),) * 2)
@@ -167,7 +213,7 @@ class Sheet(Case):
             filled = width / (2 * wide * math.cos(angle))
             self.near(sheet["braid_angle"], math.degrees(angle), "angle")
             self.near(sheet["braid_angle"], 35, "angle")
-            self.near(sheet["cover"], 2 * filled - filled ** 2, "cover")
+            self.near(sheet["cover"], 2 * filled - filled**2, "cover")
         self.near(sheet["mass"], tex * length / (repeat * wide), "mass")
         self.near(sheet["yarn_fraction"], volume / (repeat * wide * thick), "yarns")
         self.near(sheet["fibre_fraction"], tex * length / (1000 * density) / (repeat * wide * thick), "fibres")
@@ -219,8 +265,10 @@ end
     # What cannot have one is told.
     def test_repeat_beyond_reason(self):
         path = self.folder / "cloth.txt"
-        path.write_text("fabric 1\nthread t\n  diameter 0.2\nend\nweave\n  warp t 4 pitch 0.5\n  weft t 4 pitch 0.5\n"
-                        "  draft basket 500/500\nend\n")
+        path.write_text(
+            "fabric 1\nthread t\n  diameter 0.2\nend\nweave\n  warp t 4 pitch 0.5\n  weft t 4 pitch 0.5\n"
+            "  draft basket 500/500\nend\n"
+        )
         told = self.succeeds("info", path)
         self.assertIn("no data sheet of this weave: its repeat is far larger", told.stderr)
         self.assertNotIn("data sheet of the", told.stdout)

@@ -17,8 +17,10 @@ CUT = "BooleanDifference{ Volume{1}; Delete; }{ Volume{2}; Delete; }"
 SPHERE = 4 * math.pi / 3
 # Each with its volume.
 SOLIDS = {
-    "fillet": ("Box(1) = {0,0,0, 3,2,1}; Fillet{1}{1:12}{0.2}",
-               2.6 * 1.6 * 0.6 + 0.4 * (2.6 * 1.6 + 2.6 * 0.6 + 1.6 * 0.6) + math.pi * 0.04 * 4.8 + SPHERE * 0.008),
+    "fillet": (
+        "Box(1) = {0,0,0, 3,2,1}; Fillet{1}{1:12}{0.2}",
+        2.6 * 1.6 * 0.6 + 0.4 * (2.6 * 1.6 + 2.6 * 0.6 + 1.6 * 0.6) + math.pi * 0.04 * 4.8 + SPHERE * 0.008,
+    ),
     "hole": ("Box(1) = {0,0,0, 3,2,1}; Cylinder(2) = {1,1,-1, 0,0,3, 0.4};" + CUT, 6 - 0.16 * math.pi),
     "void": ("Box(1) = {0,0,0, 3,2,1}; Box(2) = {1,0.5,0.25, 0.5,0.5,0.5};" + CUT, 5.875),
     "hollow_sphere": ("Sphere(1) = {0,0,0, 2}; Sphere(2) = {0,0,0, 1};" + CUT, 7 * SPHERE),
@@ -124,7 +126,9 @@ class Foreign(Case):
             with self.subTest(solid=name):
                 if done.returncode != 0:
                     self.assertEqual(done.returncode, 1)
-                    self.assertRegex(done.stderr, rf"{name}.step:\d+:\d+: error: .* cannot be written as STEP: .*--to iges")
+                    self.assertRegex(
+                        done.stderr, rf"{name}.step:\d+:\d+: error: .* cannot be written as STEP: .*--to iges"
+                    )
                     self.assertFalse(path.exists())
                     self.assertEqual(run("convert", source, "-o", self.folder / f"{name}.igs").returncode, 0)
                     continue
@@ -138,31 +142,47 @@ class Foreign(Case):
     def with_statements(self, name, statements):
         """That solid's file with more statements; `{SHELL}`, `{CONTEXT}`, `{REPRESENTATION}`, `{FACE}` are its own."""
         text = self.solid(name).read_text()
-        for word, type_name in (("SHELL", "CLOSED_SHELL"), ("CONTEXT", "\\( ?GEOMETRIC_REPRESENTATION_CONTEXT"),
-                                ("REPRESENTATION", "ADVANCED_BREP_SHAPE_REPRESENTATION"), ("FACE", "ADVANCED_FACE")):
+        for word, type_name in (
+            ("SHELL", "CLOSED_SHELL"),
+            ("CONTEXT", "\\( ?GEOMETRIC_REPRESENTATION_CONTEXT"),
+            ("REPRESENTATION", "ADVANCED_BREP_SHAPE_REPRESENTATION"),
+            ("FACE", "ADVANCED_FACE"),
+        ):
             statements = statements.replace("{" + word + "}", re.search(rf"(#\d+) ?= ?{type_name}", text)[1])
         path = self.folder / f"{name}_more.step"
         path.write_text(text.replace("ENDSEC;\nEND-ISO", statements + "\nENDSEC;\nEND-ISO"))
         return path
 
     def test_what_no_shape_depends_on_is_left_out(self):
-        path = self.with_statements("hole", "#9001=PRESENTATION_STYLE_ASSIGNMENT($);\n#9002=STYLED_ITEM('',(#9001),{FACE});\n"
-                                    "#9003=REPRESENTATION('density',(#9003),{CONTEXT});\n#9004=OVER_RIDING_STYLED_ITEM('',(),{FACE},$);\n"
-                                    "#9005=DESCRIPTIVE_REPRESENTATION_ITEM('steel');\n#9006=REPRESENTATION('material',(#9005),{CONTEXT});")
+        path = self.with_statements(
+            "hole",
+            "#9001=PRESENTATION_STYLE_ASSIGNMENT($);\n#9002=STYLED_ITEM('',(#9001),{FACE});\n"
+            "#9003=REPRESENTATION('density',(#9003),{CONTEXT});\n#9004=OVER_RIDING_STYLED_ITEM('',(),{FACE},$);\n"
+            "#9005=DESCRIPTIVE_REPRESENTATION_ITEM('steel');\n#9006=REPRESENTATION('material',(#9005),{CONTEXT});",
+        )
         done = run("convert", path, "-o", self.folder / "out.stp")
         self.assertEqual(done.returncode, 0, done.stderr)
         for number in (9001, 9003, 9004, 9005):
-            self.assertRegex(done.stderr, rf"hole_more.step:\d+:\d+: warning: #{number}.*; it is left out, since no shape depends on it")
+            self.assertRegex(
+                done.stderr,
+                rf"hole_more.step:\d+:\d+: warning: #{number}.*; it is left out, since no shape depends on it",
+            )
         after = json.loads(self.totals(self.folder / "out.stp"))
         self.assertEqual((after["solids"], after["valid"]), (1, 1))
         # Of a face it is an error.
         path = self.with_statements("hole", "#9001=ADVANCED_FACE('',$,$,.T.);")
-        self.assertRegex(run("convert", path, "-o", self.folder / "no.stp").stderr, r": error: #9001: attribute 2 of ADVANCED_FACE is '\$'")
+        self.assertRegex(
+            run("convert", path, "-o", self.folder / "no.stp").stderr,
+            r": error: #9001: attribute 2 of ADVANCED_FACE is '\$'",
+        )
 
     def test_two_representations_of_one_shape_are_no_faces_twice(self):
-        path = self.with_statements("hole", "#9001=SHELL_BASED_SURFACE_MODEL('',({SHELL}));\n"
-                                    "#9002=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#9001),{CONTEXT});\n"
-                                    "#9003=SHAPE_REPRESENTATION_RELATIONSHIP('','',{REPRESENTATION},#9002);")
+        path = self.with_statements(
+            "hole",
+            "#9001=SHELL_BASED_SURFACE_MODEL('',({SHELL}));\n"
+            "#9002=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#9001),{CONTEXT});\n"
+            "#9003=SHAPE_REPRESENTATION_RELATIONSHIP('','',{REPRESENTATION},#9002);",
+        )
         done = run("check", path)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("14", done.stdout)  # faces: each of the seven is read twice
@@ -187,18 +207,25 @@ class Foreign(Case):
     def test_iges_states_no_coarser_resolution_than_edges_need(self):
         """A file that calls 0.01 mm one point and whose edges all meet: receivers would bend them by so much."""
         source = self.solid("hole")
-        text, count = re.subn(r"(UNCERTAINTY_MEASURE_WITH_UNIT\(LENGTH_MEASURE\()[^)]*", r"\g<1>1.E-02", source.read_text())
+        text, count = re.subn(
+            r"(UNCERTAINTY_MEASURE_WITH_UNIT\(LENGTH_MEASURE\()[^)]*", r"\g<1>1.E-02", source.read_text()
+        )
         self.assertGreater(count, 0)
         source.write_text(text)
         run("convert", source, "-o", self.folder / "out.igs")
-        stated = {path: float(re.search(r"resolution (\S+)", run("info", path).stdout)[1]) for path in (source, self.folder / "out.igs")}
+        stated = {
+            path: float(re.search(r"resolution (\S+)", run("info", path).stdout)[1])
+            for path in (source, self.folder / "out.igs")
+        }
         self.assertEqual(stated[source], 0.01)
         self.assertLess(stated[self.folder / "out.igs"], 2e-5)
 
     def test_backslashes_come_back(self):
         name = r"a\X2\0041\X0\b"
         text = self.folder / "bs.txt"
-        text.write_text(f'fabric 1\ntolerance 0.05\nyarn "{name}"\n diameter 0.4\n path polyline\n 0 0 0\n 0 1 0\n end\nend\n')
+        text.write_text(
+            f'fabric 1\ntolerance 0.05\nyarn "{name}"\n diameter 0.4\n path polyline\n 0 0 0\n 0 1 0\n end\nend\n'
+        )
         for end in (".stp", ".igs"):
             path = self.folder / f"bs{end}"
             self.succeeds("convert", text, "-o", path)

@@ -12,8 +12,10 @@ from program import Case, SAMPLES
 
 TOLERANCE = 1e-9
 VALIDATION = "geometric validation property"
-SCHEMAS = {"AP242": "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }",
-           "AP214": "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"}
+SCHEMAS = {
+    "AP242": "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }",
+    "AP214": "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }",
+}
 
 
 class StepProperties(Case):
@@ -46,13 +48,25 @@ class StepProperties(Case):
         products = self.products(source, *options)
         for definition in products.representation:
             self.compare(products, definition)
-        root, = (d for d in products.representation
-                 if not any(d == part for parts in products.components.values() for part, _ in parts))
+        (root,) = (
+            d
+            for d in products.representation
+            if not any(d == part for parts in products.components.values() for part, _ in parts)
+        )
         self.assertEqual(len(products.components[root]) > 0, True)
         return products
 
     def test_samples(self):
-        for sample in ("weave_plain", "jersey", "ring", "sections", "braid_tape", "ply3_z", "plain4_grid", "weave_racetrack"):
+        for sample in (
+            "weave_plain",
+            "jersey",
+            "ring",
+            "sections",
+            "braid_tape",
+            "ply3_z",
+            "plain4_grid",
+            "weave_racetrack",
+        ):
             with self.subTest(sample=sample):
                 products = self.agrees(SAMPLES / (sample + ".txt"))
                 parts = [d for d in products.representation if products.solid(d) is not None]
@@ -107,10 +121,17 @@ class StepProperties(Case):
         """What the reader of these tests takes for wrong."""
         self.products(SAMPLES / "ring.txt")
         text = (self.folder / "fabric.stp").read_text("ascii")
-        for old, new in (("ENDSEC;\nDATA;", "DATA;"), ("'volume measure'", "'volume\nmeasure'"), (" = EDGE_LOOP", " = EDGE_LOP"),
-                         ("CLOSED_SHELL('',", "CLOSED_SHELL("), (",.T.);\n", ",.T);\n"), ("LENGTH_UNIT() NAMED_UNIT(*)",
-                         "NAMED_UNIT(*) LENGTH_UNIT()"), ("DIRECTION('',(0.,0.,1.)", "DIRECTION('',(0,0.,1.)"),
-                         ("VERTEX_POINT('',#", "VERTEX_POINT('',#9999"), ("\nEND-ISO", "\n#1 = PLANE();\nEND-ISO")):
+        for old, new in (
+            ("ENDSEC;\nDATA;", "DATA;"),
+            ("'volume measure'", "'volume\nmeasure'"),
+            (" = EDGE_LOOP", " = EDGE_LOP"),
+            ("CLOSED_SHELL('',", "CLOSED_SHELL("),
+            (",.T.);\n", ",.T);\n"),
+            ("LENGTH_UNIT() NAMED_UNIT(*)", "NAMED_UNIT(*) LENGTH_UNIT()"),
+            ("DIRECTION('',(0.,0.,1.)", "DIRECTION('',(0,0.,1.)"),
+            ("VERTEX_POINT('',#", "VERTEX_POINT('',#9999"),
+            ("\nEND-ISO", "\n#1 = PLANE();\nEND-ISO"),
+        ):
             with self.subTest(change=new):
                 self.assertIn(old, text)
                 with self.assertRaises(part21.Wrong):

@@ -66,17 +66,33 @@ def unit_stress(k):
 
 
 class Strength(Case):
-    def cell(self, *options, name="cell", tow="3400 0.35", resin="3400 0.35", strength="500 500", section="ellipse 0.4 0.3",
-             path=STRAIGHT, height=1, z=" z"):
+    def cell(
+        self,
+        *options,
+        name="cell",
+        tow="3400 0.35",
+        resin="3400 0.35",
+        strength="500 500",
+        section="ellipse 0.4 0.3",
+        path=STRAIGHT,
+        height=1,
+        z=" z",
+    ):
         text = self.folder / f"{name}.txt"
-        text.write_text(CELL.format(tow=tow, resin=resin, strength=strength, section=section, path=path, height=height, z=z))
+        text.write_text(
+            CELL.format(tow=tow, resin=resin, strength=strength, section=section, path=path, height=height, z=z)
+        )
         done = run("mesh", text, "--matrix", *options, "-o", self.folder / f"{name}.inp")
         self.assertEqual(done.returncode, 0, done.stderr)
         return self.folder / f"{name}.inp"
 
     def homogenize(self, deck, *options):
-        done = subprocess.run([sys.executable, ROOT / "scripts" / "homogenize.py", deck, "--json", "-", *options],
-                              text=True, capture_output=True, check=False)
+        done = subprocess.run(
+            [sys.executable, ROOT / "scripts" / "homogenize.py", deck, "--json", "-", *options],
+            text=True,
+            capture_output=True,
+            check=False,
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
@@ -114,12 +130,22 @@ class Strength(Case):
 
     def test_layers(self):
         """Of one Poisson's ratio: each has the stress of the whole by its share of the stiffness."""
-        deck = self.cell("--voxel", "8", tow="7000 0.3", resin="3000 0.3", strength="20 50", section="polygon\n -4 -0.25\n 4 -0.25\n 4 0.25\n -4 0.25\n end",
-                         path="    -2 0.5 0.5\n    3 0.5 0.5")  # half of the height
+        deck = self.cell(
+            "--voxel",
+            "8",
+            tow="7000 0.3",
+            resin="3000 0.3",
+            strength="20 50",
+            section="polygon\n -4 -0.25\n 4 -0.25\n 4 0.25\n -4 0.25\n end",
+            path="    -2 0.5 0.5\n    3 0.5 0.5",
+        )  # half of the height
         mean = (7000 + 3000) / 2
         found = {(entry["load"], entry["direction"]): entry["first"] for entry in self.loads(deck)}
         for load, region, strength, modulus in (
-            (("xx", "+"), "Matrix", 20, 3000), (("xx", "-"), "tow", XC, 7000), (("yy", "+"), "tow", YT, 7000), (("yy", "-"), "tow", YC, 7000),
+            (("xx", "+"), "Matrix", 20, 3000),
+            (("xx", "-"), "tow", XC, 7000),
+            (("yy", "+"), "tow", YT, 7000),
+            (("yy", "-"), "tow", YC, 7000),
             (("xy", "+"), "tow", S12, 7000),
         ):
             self.assertEqual(found[load]["region"], region)
@@ -131,6 +157,7 @@ class Strength(Case):
         deck = self.cell("--periodic", "--size", "0.3", tow="3400 0", resin="3400 0", strength="8 9", height=0.8, z="")
         sys.path.insert(0, str(ROOT / "scripts"))
         from cell_deck import Deck
+
         mesh = Deck(deck)
         corners = numpy.array([[mesh.nodes[n] for n in nodes[:4]] for nodes in mesh.elements.values()])[:, :, 2] - 0.4
         near = (5 - math.sqrt(5)) / 20
@@ -143,8 +170,11 @@ class Strength(Case):
         text = ROOT / "samples" / "cell_straight.txt"
         plain = text.read_text()
         given = self.folder / "given.txt"
-        given.write_text(plain.replace("material tow\n", "material tow\n  strength transverse 900 500 40 140 70\n", 1)
-                         .replace("material epoxy\n", "material epoxy\n  strength isotropic 80 120\n", 1))
+        given.write_text(
+            plain.replace("material tow\n", "material tow\n  strength transverse 900 500 40 140 70\n", 1).replace(
+                "material epoxy\n", "material epoxy\n  strength isotropic 80 120\n", 1
+            )
+        )
         done = run("mesh", given, "--matrix", "--periodic", "--voxel", "6", "--to", "inp,cdb,k,bdf", "-o", self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("has no place for the strengths"), 2, done.stderr)  # LS-DYNA, Nastran
@@ -158,12 +188,22 @@ class Strength(Case):
     def test_where_there_is_no_card_a_warning_says_so(self):
         text = (ROOT / "samples" / "plain4_path.txt").read_text()
         given = self.folder / "dry.txt"
-        given.write_text(text.replace("thread tow\n", "material fibre\n  elastic isotropic 72000 0.22\n  strength transverse 2150 1450\nend\n"
-                                      "thread tow\n  material fibre\n", 1))
+        given.write_text(
+            text.replace(
+                "thread tow\n",
+                "material fibre\n  elastic isotropic 72000 0.22\n  strength transverse 2150 1450\nend\n"
+                "thread tow\n  material fibre\n",
+                1,
+            )
+        )
         for options, count in ((("--size", "0.3", "--to", "cdb"), 1), (("--elements", "beam", "--to", "inp,cdb,k"), 3)):
             done = run("mesh", given, *options, "-o", self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(len(re.findall("no place for the strengths|card of strengths wants those across", done.stderr)), count, done.stderr)
+            self.assertEqual(
+                len(re.findall("no place for the strengths|card of strengths wants those across", done.stderr)),
+                count,
+                done.stderr,
+            )
             for archive in self.folder.glob("*.cdb"):
                 self.assertNotIn("FCLI", archive.read_text())
 

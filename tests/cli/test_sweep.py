@@ -39,14 +39,18 @@ class Sweep(Case):
             return list(csv.DictReader(file))
 
     def test_one_value(self):
-        result = self.succeeds("convert", self.cloth, "--set", "d=distance/4", "--set", "distance=2", "--to", "txt", "-o", "-")
+        result = self.succeeds(
+            "convert", self.cloth, "--set", "d=distance/4", "--set", "distance=2", "--to", "txt", "-o", "-"
+        )
         self.assertIn("pitch 2\n", result.stdout)
         self.assertIn("diameter 0.5\n", result.stdout)
 
     def test_grid(self):
         result, rows = self.sweep("--set", "distance=0.9:1.1:0.1", "--set", "d=0.2,0.3mm")
-        self.assertEqual([(row["distance"], row["d"]) for row in rows],
-                         [(p, d) for p in ("0.9", "1", "1.1") for d in ("0.2", "0.3mm")])
+        self.assertEqual(
+            [(row["distance"], row["d"]) for row in rows],
+            [(p, d) for p in ("0.9", "1", "1.1") for d in ("0.2", "0.3mm")],
+        )
         self.assertIn("6 variants: 6 ok", result.stderr)
         self.assertEqual(result.stdout, "")
         for row in rows:
@@ -70,11 +74,13 @@ class Sweep(Case):
 
     def test_table(self):
         given = self.folder / "given.csv"
-        given.write_text("d;distance\n0.2mm;1\n# a comment\n\"0.25\";1.2\n")
+        given.write_text('d;distance\n0.2mm;1\n# a comment\n"0.25";1.2\n')
         _, rows = self.sweep("--table", given, "--do", "convert", "--to", "iges,txt", "-o", self.out)
         self.assertEqual([row["d"] for row in rows], ["0.2mm", "0.25"])
-        self.assertEqual(sorted(path.name for path in self.out.iterdir()),
-                         ["cloth_0001.igs", "cloth_0001.txt", "cloth_0002.igs", "cloth_0002.txt"])
+        self.assertEqual(
+            sorted(path.name for path in self.out.iterdir()),
+            ["cloth_0001.igs", "cloth_0001.txt", "cloth_0002.igs", "cloth_0002.txt"],
+        )
         self.assertIn("pitch 1.2", (self.out / "cloth_0002.txt").read_text())
         self.assertIn("diameter 0.25", (self.out / "cloth_0002.txt").read_text())
 
@@ -83,7 +89,7 @@ class Sweep(Case):
         odd = self.folder / "=1+1.txt"
         odd.write_text(CLOTH)
         given = self.folder / "given.csv"
-        given.write_text("d,distance\n\"'+0.2mm\",1\n+0.2,1\n")
+        given.write_text('d,distance\n"\'+0.2mm",1\n+0.2,1\n')
         self.cloth = odd
         _, rows = self.sweep("--table", given)
         self.assertEqual([row["variant"] for row in rows], ["'=1+1_0001", "'=1+1_0002"])
@@ -92,9 +98,12 @@ class Sweep(Case):
 
     def test_tables_that_are_none(self):
         given = self.folder / "given.csv"
-        for content, words in ((b"d\n0.2\n1\0002\n", ":3:1: error: the value of d has a zero byte"), (b"d\0\n1\n", ":1:1: error: no param is called 'd"),
-                               (b"a" * 300 + b"\n1\n", ":1:1: error: no param is called 'aaa"),
-                               (b"d\n" + b"1\n" * 1_000_001, "error: 1000001 variants are more than the 1000000")):
+        for content, words in (
+            (b"d\n0.2\n1\0002\n", ":3:1: error: the value of d has a zero byte"),
+            (b"d\0\n1\n", ":1:1: error: no param is called 'd"),
+            (b"a" * 300 + b"\n1\n", ":1:1: error: no param is called 'aaa"),
+            (b"d\n" + b"1\n" * 1_000_001, "error: 1000001 variants are more than the 1000000"),
+        ):
             given.write_bytes(content)
             result = run("sweep", self.cloth, "--table", given, "--csv", self.table)
             self.assertEqual(result.returncode, 2)
@@ -136,9 +145,14 @@ class Sweep(Case):
 
     def test_bad_tables(self):
         given = self.folder / "given.csv"
-        for text, part in (("", "is empty"), ("d,\n1,2\n", "column 2 has no name"), ("d,d\n1,2\n", "twice"),
-                           ("d,distance\n0.2\n", "given.csv:2:1: error: this row has 1 values"),
-                           ("d\n\"0.2\n", "a quote is not closed"), ("d,distance\n,2\n", "the value of d is missing")):
+        for text, part in (
+            ("", "is empty"),
+            ("d,\n1,2\n", "column 2 has no name"),
+            ("d,d\n1,2\n", "twice"),
+            ("d,distance\n0.2\n", "given.csv:2:1: error: this row has 1 values"),
+            ('d\n"0.2\n', "a quote is not closed"),
+            ("d,distance\n,2\n", "the value of d is missing"),
+        ):
             given.write_text(text)
             result = run("sweep", self.cloth, "--table", given, "--csv", self.table)
             self.assertEqual(result.returncode, 2, text)
@@ -146,8 +160,28 @@ class Sweep(Case):
 
     def test_stopped_and_resumed(self):
         report = self.folder / "report.json"
-        words = ("sweep", self.cloth, "--set", "distance=0.9:1.5", "--set", "d=0.2:0.3", "--lhs", 400, "--csv", self.table,
-                 "--do", "convert", "--to", "iges", "-o", self.out, "--report", report, "-j", 2)
+        words = (
+            "sweep",
+            self.cloth,
+            "--set",
+            "distance=0.9:1.5",
+            "--set",
+            "d=0.2:0.3",
+            "--lhs",
+            400,
+            "--csv",
+            self.table,
+            "--do",
+            "convert",
+            "--to",
+            "iges",
+            "-o",
+            self.out,
+            "--report",
+            report,
+            "-j",
+            2,
+        )
         process = start(*words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         # Ended by Ctrl-C, it leaves its report. Two are worked on at once: of four files two at least are reported.
         while process.poll() is None and len(list(self.out.glob("[!.]*.igs"))) < 4:

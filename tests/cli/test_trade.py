@@ -11,7 +11,9 @@ from program import Case, run
 class Trade(Case):
     def test_every_file_has_a_sheet_and_says_what_it_says(self):
         sheets = trade.sheets()
-        self.assertEqual(sorted(sheet["cloth"] for sheet in sheets), sorted(path.stem for path in trade.TRADE.glob("*.txt")))
+        self.assertEqual(
+            sorted(sheet["cloth"] for sheet in sheets), sorted(path.stem for path in trade.TRADE.glob("*.txt"))
+        )
         published = [sheet for sheet in sheets if sheet["kind"] != "memory"]
         self.assertGreaterEqual(len(published), 65)
         self.assertGreaterEqual(sum(not sheet["outside"] for sheet in published), 41)
@@ -36,12 +38,16 @@ class Trade(Case):
     def test_measures_are_those_of_known_paths(self):
         # An arc of a radian on a radius of 2, by three points; and Peirce's plain cloth, whose arcs and straights are
         # in closed form: yarns of 0.3 mm at a pitch of 1 mm, as published.
-        arc = [trade.Point((2 * s, 0, 2 * (1 - c)), (c, 0, s), 0.1) for s, c in
-               ((0, 1), (0.479425538604203, 0.8775825618903728), (0.8414709848078965, 0.5403023058681398))]
+        arc = [
+            trade.Point((2 * s, 0, 2 * (1 - c)), (c, 0, s), 0.1)
+            for s, c in ((0, 1), (0.479425538604203, 0.8775825618903728), (0.8414709848078965, 0.5403023058681398))
+        ]
         self.assertAlmostEqual(trade.length(arc), 2.0, places=12)
         path = self.folder / "peirce.txt"
-        path.write_text("fabric 1\ntolerance 1e-6\nthread a\n  diameter 0.3\nend\nweave\n  warp a 8 1\n  weft a 8 1\n"
-                        "  draft plain\nend\n")
+        path.write_text(
+            "fabric 1\ntolerance 1e-6\nthread a\n  diameter 0.3\nend\nweave\n  warp a 8 1\n  weft a 8 1\n"
+            "  draft plain\nend\n"
+        )
         lines = trade.lines_of(path, "--as-published")
         crimp = trade.crimp(lines["warp_3"], 0, 1.0, 8)
         # By bisection: p = (l - D t) cos t + D sin t and h = (l - D t) sin t + D (1 - cos t), D = 0.6, h = 0.3.

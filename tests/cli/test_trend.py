@@ -58,27 +58,39 @@ class Trend(unittest.TestCase):
         self.assertEqual([row[1:3] for row in found], [(("selvage", "512"), "MB/s")])
 
     def test_growth_is_no_loss_where_the_row_gains(self):
-        self.assertEqual(self.worse(("| 1.0 | 1.00 | 5 |", "| 0.1 | 1.00 | 5 |"), ("| 16.0 | 4.00 |", "| 15.0 | 37.00 |"))[0], [])
+        self.assertEqual(
+            self.worse(("| 1.0 | 1.00 | 5 |", "| 0.1 | 1.00 | 5 |"), ("| 16.0 | 4.00 |", "| 15.0 | 37.00 |"))[0], []
+        )
         found, _ = self.worse(("| 16.0 | 4.00 |", "| 16.0 | 5.00 |"))
         self.assertEqual([row[2:] for row in found], [("to the first", 4.0, 5.0)])
 
     def test_peers_are_not_ours(self):
-        self.assertEqual(self.worse(("| bare loop | 8 | 1.00 |", "| bare loop | 8 | 1.05 |"), ("4.00 | 20 |", "4.00 | 90 |"))[0], [])
+        self.assertEqual(
+            self.worse(("| bare loop | 8 | 1.00 |", "| bare loop | 8 | 1.05 |"), ("4.00 | 20 |", "4.00 | 90 |"))[0], []
+        )
 
     def test_times_count_beyond_those_of_peers(self):
         """On a machine twice as slow all takes twice as long: what takes three times as long, or more memory, is worse."""
-        slow = [("| bare loop | 8 | 1.00 | 300 |", "| bare loop | 8 | 2.00 | 150 |"), ("| selvage | 8 | 1.00 | 400 |", "| selvage | 8 | 2.00 | 200 |"),
-                ("| selvage | 64 | 8.00 | 400 | 3.0 |", "| selvage | 64 | 24.00 | 133 | 3.0 |"), ("| 64.00 | 400 | 3.0 |", "| 128.00 | 200 | 4.0 |")]
+        slow = [
+            ("| bare loop | 8 | 1.00 | 300 |", "| bare loop | 8 | 2.00 | 150 |"),
+            ("| selvage | 8 | 1.00 | 400 |", "| selvage | 8 | 2.00 | 200 |"),
+            ("| selvage | 64 | 8.00 | 400 | 3.0 |", "| selvage | 64 | 24.00 | 133 | 3.0 |"),
+            ("| 64.00 | 400 | 3.0 |", "| 128.00 | 200 | 4.0 |"),
+        ]
         found, _ = self.worse(*slow)
-        self.assertEqual([row[1:3] for row in found], [(("selvage", "64"), "MB/s"), (("selvage", "512"), "memory, MiB")])
+        self.assertEqual(
+            [row[1:3] for row in found], [(("selvage", "64"), "MB/s"), (("selvage", "512"), "memory, MiB")]
+        )
         now = PAGE
         for old, new in slow:
             now = now.replace(old, new)
         self.assertIn("took 2.00 times as long as in abc (the median of 1 rows)", trend.summary(PAGE, "abc", now))
 
     def test_another_mesh_of_the_same_size_is_compared(self):
-        found, compared = self.worse(("| 0.1 | 500 | selvage | 1 | 5000 | 2.0 |", "| 0.1 | 300 | selvage | 1 | 2500 | 20.0 |"),
-                                     ("| 0.1 | 500 | selvage | 2 | 5000 | 1.0 |", "| 0.1 | 300 | selvage | 2 | 2500 | 0.9 |"))
+        found, compared = self.worse(
+            ("| 0.1 | 500 | selvage | 1 | 5000 | 2.0 |", "| 0.1 | 300 | selvage | 1 | 2500 | 20.0 |"),
+            ("| 0.1 | 500 | selvage | 2 | 5000 | 1.0 |", "| 0.1 | 300 | selvage | 2 | 2500 | 0.9 |"),
+        )
         self.assertEqual(compared, 7)
         self.assertEqual([row[1:] for row in found], [(("0.1", "selvage", "threads 1"), "s", 2.0, 20.0)])
 
@@ -89,8 +101,10 @@ class Trend(unittest.TestCase):
     def test_what_a_run_finds_does_not_hide_a_row(self):
         found, compared = self.worse(("| 455 | 16.0 |", "| 456 | 20.0 |"), ("| 2 | 5000 | 1.0 |", "| 2 | 5100 | 1.5 |"))
         self.assertEqual(compared, 7)
-        self.assertEqual([(row[1], row[2]) for row in found],
-                         [(("jersey 8 x 8",), "ours, s"), (("0.1", "selvage", "threads 2"), "s")])
+        self.assertEqual(
+            [(row[1], row[2]) for row in found],
+            [(("jersey 8 x 8",), "ours, s"), (("0.1", "selvage", "threads 2"), "s")],
+        )
 
     def test_exponents(self):
         found = {what: trend.exponent(points) for _, what, points in trend.curves(PAGE)}

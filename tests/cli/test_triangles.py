@@ -18,7 +18,10 @@ import reader
 
 RING = SAMPLES / "ring.txt"
 # Paths and grids, ends of every style, rings, plies, knits.
-CLOTHS = [SAMPLES / name for name in ("plain4_path.txt", "plain4_grid.txt", "ring.txt", "sections.txt", "ply2_plain.txt", "braid_tape.txt")]
+CLOTHS = [
+    SAMPLES / name
+    for name in ("plain4_path.txt", "plain4_grid.txt", "ring.txt", "sections.txt", "ply2_plain.txt", "braid_tape.txt")
+]
 CYLINDER = """fabric 1
 units {units}
 tolerance 0.001
@@ -51,7 +54,11 @@ class Triangles(Case):
         done = self.succeeds("convert", source, "--to", "stl,obj,ply,gltf", "-o", f"{self.out}/", *options)
         stem = self.out / source.stem
         self.facets = reader.stl(f"{stem}.stl")[1]
-        meshes = {"obj": reader.obj(f"{stem}.obj"), "ply": reader.ply(f"{stem}.ply")[0], "gltf": reader.gltf(f"{stem}.glb")}
+        meshes = {
+            "obj": reader.obj(f"{stem}.obj"),
+            "ply": reader.ply(f"{stem}.ply")[0],
+            "gltf": reader.gltf(f"{stem}.glb"),
+        }
         return meshes, reader.stl(f"{stem}.stl")[0], done.stderr
 
     def yarns(self, source):
@@ -75,7 +82,9 @@ class Triangles(Case):
                             if chord == chords[0]:
                                 self.assertLess(abs(loss), 1e-3, (name, mesh.name))
                             if chord:
-                                self.assertLess(abs(loss) * yarn["volume"], chord * mesh.areas().sum(), (name, mesh.name))
+                                self.assertLess(
+                                    abs(loss) * yarn["volume"], chord * mesh.areas().sum(), (name, mesh.name)
+                                )
                     # STL has no yarns: it is all of them.
                     self.assertEqual(soup.bad_edges(), 0)
                     self.assertGreater(soup.areas().min(), 0)
@@ -129,8 +138,10 @@ class Triangles(Case):
     def test_a_torus(self):
         turns = [2 * math.pi * k / 48 for k in range(48)]
         rows = "".join(f"    {5 * math.cos(turn)!r} {5 * math.sin(turn)!r} 0\n" for turn in turns)
-        source = self.source("fabric 1\nunits mm\ntolerance 1e-4\nthread rod\n  diameter 1\nend\nyarn ring rod\n  closed\n"
-                             f"  path uniform\n{rows}  end\nend\n")
+        source = self.source(
+            "fabric 1\nunits mm\ntolerance 1e-4\nthread rod\n  diameter 1\nend\nyarn ring rod\n  closed\n"
+            f"  path uniform\n{rows}  end\nend\n"
+        )
         meshes, soup, _ = self.write(source, "--chord", 5e-4)
         exact = 2 * math.pi**2 * 5 * 0.5**2  # Pappus
         for mesh in (soup, *(yarns[0] for yarns in meshes.values())):
@@ -149,8 +160,12 @@ class Triangles(Case):
             volume = reader.Mesh("", mesh.points, triangles).volume()
             self.assertAlmostEqual(volume / soup.volume(), 1, delta=1e-6)
         gmsh = shutil.which("gmsh")
-        done = subprocess.run([gmsh, "plain4_path.stl", "-save", "-format", "msh22", "-o", "again.msh"], cwd=self.out,
-                              capture_output=True, text=True)
+        done = subprocess.run(
+            [gmsh, "plain4_path.stl", "-save", "-format", "msh22", "-o", "again.msh"],
+            cwd=self.out,
+            capture_output=True,
+            text=True,
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         again = meshio.read(self.out / "again.msh")
         self.assertEqual(len(again.cells_dict["triangle"]), len(soup.triangles))
@@ -192,16 +207,25 @@ class Triangles(Case):
     def test_a_motion_that_turns(self):
         rows = [(0, 0, 0), (1, 0.2, 0.1), (2, -0.1, 0.3), (3, 0, 0)]
         text = "fabric 1\nunits mm\nthread t\n  section circle 0.3\nend\n"
-        for name, turn in (("first", lambda x, y, z: (x, y, z)), ("second", lambda x, y, z: (5 - y, x + 1, z + 2)),
-                           ("third", lambda x, y, z: (x, y, z + 4))):
-            text += f"yarn {name} t\n  path\n" + "".join("    {} {} {}\n".format(*turn(*row)) for row in rows) + "  end\nend\n"
+        for name, turn in (
+            ("first", lambda x, y, z: (x, y, z)),
+            ("second", lambda x, y, z: (5 - y, x + 1, z + 2)),
+            ("third", lambda x, y, z: (x, y, z + 4)),
+        ):
+            text += (
+                f"yarn {name} t\n  path\n"
+                + "".join("    {} {} {}\n".format(*turn(*row)) for row in rows)
+                + "  end\nend\n"
+            )
         source = self.source(text)
         self.succeeds("convert", source, "--instances", "-o", self.out / "short.glb")
         self.succeeds("convert", source, "-o", self.out / "full.glb")
         document, _ = reader.gltf_parts(self.out / "short.glb")
         self.assertEqual(len(document["meshes"]), 1)
-        self.assertEqual([sorted({"matrix", "translation"} & set(node)) for node in document["nodes"][1:]],
-                         [[], ["matrix"], ["translation"]])
+        self.assertEqual(
+            [sorted({"matrix", "translation"} & set(node)) for node in document["nodes"][1:]],
+            [[], ["matrix"], ["translation"]],
+        )
         for a, b in zip(reader.gltf(self.out / "full.glb"), reader.gltf(self.out / "short.glb")):
             self.assertAlmostEqual(b.volume() / a.volume(), 1, delta=1e-5)
             self.assertLess(np.abs(a.points.min(axis=0) - b.points.min(axis=0)).max(), 1e-4)
@@ -231,10 +255,15 @@ class Triangles(Case):
 
     def test_khronos_validator(self):
         node = shutil.which("node")
-        if node is None or subprocess.run([node, "-e", "require('gltf-validator')"], capture_output=True).returncode != 0:
+        if (
+            node is None
+            or subprocess.run([node, "-e", "require('gltf-validator')"], capture_output=True).returncode != 0
+        ):
             self.skipTest("gltf-validator is not installed (a package of Node.js; NODE_PATH tells where it is)")
-        script = ("require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync(process.argv[1])))"
-                  ".then(r => console.log(JSON.stringify(r.issues)))")
+        script = (
+            "require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync(process.argv[1])))"
+            ".then(r => console.log(JSON.stringify(r.issues)))"
+        )
         for options in ([], ["--instances"]):
             for name in ("a.glb", "a.gltf"):
                 self.succeeds("convert", SAMPLES / "jersey.txt", "--chord", 0.01, *options, "-o", self.out / name)
@@ -248,8 +277,11 @@ class Triangles(Case):
         far = self.source(cylinder(at=100000.0), "far.txt")
         meshes, soup, messages = self.write(far)
         for name in ("STL", "glTF"):
-            self.assertIn(f"warning: {name} has single precision: where yarn 'rod' is, neighbouring coordinates are 0.0078 mm apart, "
-                          "more than the tolerance 0.001", messages)
+            self.assertIn(
+                f"warning: {name} has single precision: where yarn 'rod' is, neighbouring coordinates are 0.0078 mm apart, "
+                "more than the tolerance 0.001",
+                messages,
+            )
         for mesh in (soup, meshes["gltf"][0]):
             self.assertEqual(mesh.unpaired(), 0)
             corners = mesh.corners()
@@ -267,7 +299,10 @@ class Triangles(Case):
         source = self.source(cylinder().replace("yarn rod rod", 'yarn "Kette 1\\ü, 50%" rod'))
         self.write(source)
         self.assertEqual(reader.gltf(self.out / "cloth.glb")[0].name, self.yarns(source)[0]["name"])
-        self.assertEqual(reader.obj(self.out / "cloth.obj")[0].name, self.yarns(source)[0]["name"].replace(" ", "_").replace("\\", "_"))
+        self.assertEqual(
+            reader.obj(self.out / "cloth.obj")[0].name,
+            self.yarns(source)[0]["name"].replace(" ", "_").replace("\\", "_"),
+        )
 
     def test_what_they_cannot_hold_is_said_first(self):
         parts = self.folder / "parts.igs"
@@ -276,9 +311,14 @@ class Triangles(Case):
         self.succeeds("convert", RING, "--lines", "-o", lines)
         for name in ("stl", "obj", "ply", "gltf"):
             words = self.fails(1, "convert", lines, "--to", name, "-o", f"{self.out}/")
-            self.assertIn(f"error: {name} holds no free curves, and this input has 1 curve, such as 'ring': write iges", words)
+            self.assertIn(
+                f"error: {name} holds no free curves, and this input has 1 curve, such as 'ring': write iges", words
+            )
             words = self.fails(1, "convert", parts, "--to", name, "-o", f"{self.out}/")
-            self.assertRegex(words, f"error: {name} holds no free surfaces, and this input has \\d+ surfaces, such as '.*': write iges or step")
+            self.assertRegex(
+                words,
+                f"error: {name} holds no free surfaces, and this input has \\d+ surfaces, such as '.*': write iges or step",
+            )
             words = self.fails(1, "convert", SAMPLES / "cell_plain.txt", "--cut", "--to", name, "-o", f"{self.out}/")
             self.assertIn(f"{name} holds no solids, which --cut makes: write iges or step", words)
             words = self.fails(1, "convert", RING, "--lines", "--to", name, "-o", f"{self.out}/")
@@ -289,7 +329,13 @@ class Triangles(Case):
 
     def test_none_of_them_is_read(self):
         self.write(RING, "--chord", 0.1)
-        for path, name in (("ring.stl", "stl"), ("ring.obj", "obj"), ("ring.mtl", "mtl"), ("ring.ply", "ply"), ("ring.glb", "gltf")):
+        for path, name in (
+            ("ring.stl", "stl"),
+            ("ring.obj", "obj"),
+            ("ring.mtl", "mtl"),
+            ("ring.ply", "ply"),
+            ("ring.glb", "gltf"),
+        ):
             self.assertIn(f"this is {name} (", self.fails(1, "info", self.out / path))
         # By their first bytes, too.
         for path, name in (("ring.ply", "ply"), ("ring.glb", "gltf")):
@@ -314,7 +360,9 @@ class Triangles(Case):
         runs = []
         for k, workers in enumerate((1, 2)):
             folder = self.folder / f"run{k}"
-            self.succeeds("convert", *CLOTHS[:3], "--chord", 0.002, "--to", "stl,obj,ply,gltf", "-j", workers, "-o", f"{folder}/")
+            self.succeeds(
+                "convert", *CLOTHS[:3], "--chord", 0.002, "--to", "stl,obj,ply,gltf", "-j", workers, "-o", f"{folder}/"
+            )
             runs.append(files_below(folder))
         self.assertEqual(len(runs[0]), 15)
         self.assertEqual(*runs)
@@ -322,12 +370,18 @@ class Triangles(Case):
     def test_memory_does_not_grow_with_the_cloth(self):
         peaks = []
         for count in (8, 40):
-            source = self.source(f"fabric 1\nunits mm\ntolerance 0.002\nthread t\n  section ellipse 0.4 0.2\nend\nweave\n  warp t {count} pitch 1\n"
-                                 f"  weft t {count} pitch 1\n  draft plain\nend\n")
+            source = self.source(
+                f"fabric 1\nunits mm\ntolerance 0.002\nthread t\n  section ellipse 0.4 0.2\nend\nweave\n  warp t {count} pitch 1\n"
+                f"  weft t {count} pitch 1\n  draft plain\nend\n"
+            )
             words = ["convert", source, "--to", "stl,obj,ply,gltf", "-o", f"{self.out}/", "--chord", 0.002]
-            script = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True); "
-                      "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
-            done = subprocess.run([sys.executable, "-c", script, PROGRAM, *map(str, words)], capture_output=True, text=True)
+            script = (
+                "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True); "
+                "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
+            )
+            done = subprocess.run(
+                [sys.executable, "-c", script, PROGRAM, *map(str, words)], capture_output=True, text=True
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
             peaks.append((int(done.stdout) * 1024, (self.out / "cloth.glb").stat().st_size))
         (small, _), (large, size) = peaks

@@ -13,7 +13,9 @@ import numpy as np
 import unit_cell as cell
 from program import Case, SAMPLES
 
-NAMES = os.environ.get("SELVAGE_CELL", "cell_plain twill_cell cell_satin5 cell_orthogonal cell_jersey cell_tricot").split()
+NAMES = os.environ.get(
+    "SELVAGE_CELL", "cell_plain twill_cell cell_satin5 cell_orthogonal cell_jersey cell_tricot"
+).split()
 SEGMENTS = os.environ.get("SELVAGE_SEGMENTS", "").split()
 USUAL = {"twill_cell": "28"}  # edges may not be longer than a yarn is thick; of the others 20
 COARSEST = {"cell_jersey": "0.1", "cell_tricot": "0.05"}  # mm, away from the yarns; of the others 0.2
@@ -25,8 +27,9 @@ class UnitCell(Case):
     def mesh(self, name, *more):
         sample, deck, report = SAMPLES / (name + ".txt"), self.folder / (name + ".inp"), self.folder / "report.json"
         more = ("--matrix-size", COARSEST.get(name, "0.2"), *more)
-        self.succeeds("mesh", sample, "--matrix", "--periodic", "--order", ORDER, *more, "-o", deck, "--report", report,
-                      "--quiet")
+        self.succeeds(
+            "mesh", sample, "--matrix", "--periodic", "--order", ORDER, *more, "-o", deck, "--report", report, "--quiet"
+        )
         return sample, cell.Deck(deck), json.loads(report.read_text())["inputs"][0]["mesh"]
 
     def judge(self, name, *more):
@@ -67,8 +70,7 @@ class UnitCell(Case):
         self.assertEqual(len(deck.sets), len(regions))
         found = {name: cell.volumes(points, rows).sum() for name, rows in deck.sets.items()}
         self.assertAlmostEqual(sum(found.values()) / np.prod(high - low), 1, delta=1e-12)
-        errors = [abs(volume / region["exact_volume"] - 1)
-                  for volume, region in zip(found.values(), report["regions"])]
+        errors = [abs(volume / region["exact_volume"] - 1) for volume, region in zip(found.values(), report["regions"])]
         return max(errors), angle, len(cells)
 
     def test_cells(self):

@@ -54,8 +54,10 @@ class Uses(Case):
         done = self.succeeds("check", text, "--sandbox", "require", "--report", report)
         self.assertIn("sound: every yarn is a closed valid solid, no two overlap", done.stdout)
         yarns = json.loads(report.read_text())["inputs"][0]["yarns"]
-        self.assertEqual([yarn["name"] for yarn in yarns],
-                         [f"{use}.{system}_{i}" for use in ("lower", "upper") for system in ("warp", "weft") for i in (1, 2)])
+        self.assertEqual(
+            [yarn["name"] for yarn in yarns],
+            [f"{use}.{system}_{i}" for use in ("lower", "upper") for system in ("warp", "weft") for i in (1, 2)],
+        )
         volumes = {round(yarn["volume"], 9) for yarn in yarns}
         self.assertEqual(len(volumes), 1)
 
@@ -66,20 +68,28 @@ class Uses(Case):
         self.write("in/parts/none.txt", "fabric 1\nthread t\n diameter 1\nend\n")
         self.write("in/parts/self.txt", "fabric 1\nuse file self.txt\nend\n")
         self.write("in/parts/a.txt", "fabric 1\nuse file ../main.txt\nend\n")
-        for file, words in (("parts/missing.txt", "cannot open: No such file"),
-                            ("parts", "not a regular file"),
-                            ("../outside.txt", "--allow-outside"),
-                            ("/dev/zero", "--allow-outside"),
-                            ("parts/weave.txt", "its unit is cm, that of this text mm"),
-                            ("parts/bad.txt", "it has errors"),
-                            ("parts/none.txt", "it has no yarns"),
-                            ("parts/self.txt", "it has errors"),
-                            ("main.txt", "uses itself"),
-                            ("parts/a.txt", "it has errors")):
+        for file, words in (
+            ("parts/missing.txt", "cannot open: No such file"),
+            ("parts", "not a regular file"),
+            ("../outside.txt", "--allow-outside"),
+            ("/dev/zero", "--allow-outside"),
+            ("parts/weave.txt", "its unit is cm, that of this text mm"),
+            ("parts/bad.txt", "it has errors"),
+            ("parts/none.txt", "it has no yarns"),
+            ("parts/self.txt", "it has errors"),
+            ("main.txt", "uses itself"),
+            ("parts/a.txt", "it has errors"),
+        ):
             text = self.write("in/main.txt", f"fabric 1\n\n  use file {file}\n  end\n")
             said = self.fails(1, "convert", text, "-o", self.out)
-            self.assertRegex(said, re.escape(str(text)) + ":3:3: error: the file '" + re.escape(file) + "' cannot be used: .*" +
-                             re.escape(words))
+            self.assertRegex(
+                said,
+                re.escape(str(text))
+                + ":3:3: error: the file '"
+                + re.escape(file)
+                + "' cannot be used: .*"
+                + re.escape(words),
+            )
         self.assertRegex(said, r"parts/a\.txt:2:1: error: the file '../main.txt' cannot be used: it uses itself")
         self.write("in/main.txt", "fabric 1\nuse file ../outside.txt\nend\n")
         self.succeeds("convert", text, "--allow-outside", "--to", "iges", "-o", self.out)
@@ -89,12 +99,17 @@ class Uses(Case):
         levels = 14
         for level in range(levels):
             for side in "ab":
-                self.write(f"deep/L{level}{side}.txt", f"fabric 1\nuse file L{level + 1}a.txt as x\nend\nuse file L{level + 1}b.txt as y\nend\n")
+                self.write(
+                    f"deep/L{level}{side}.txt",
+                    f"fabric 1\nuse file L{level + 1}a.txt as x\nend\nuse file L{level + 1}b.txt as y\nend\n",
+                )
         for side in "ab":
             self.write(f"deep/L{levels}{side}.txt", WEAVE)
         for command in ("check", "info"):
             said = self.fails(1, command, self.folder / "deep" / "L0a.txt")
-            self.assertRegex(said, r"L0a\.txt:[24]:1: error: the file 'L1[ab]\.txt' cannot be used: .* more than 10000 files")
+            self.assertRegex(
+                said, r"L0a\.txt:[24]:1: error: the file 'L1[ab]\.txt' cannot be used: .* more than 10000 files"
+            )
             self.assertEqual(said.count("error:"), 1, said)
 
     def test_one_file_of_points_for_each_yarn(self):
@@ -107,13 +122,22 @@ class Uses(Case):
         again = "".join(f"yarn y{i} a\n points long.csv\nend\n" for i in range(200))
         text = self.write("again.txt", "fabric 1\nthread a\n diameter 0.2\nend\n" + again)
         said = self.fails(1, "info", text)
-        self.assertRegex(said, r"again\.txt:\d+:\d+: error: no yarn in the file 'long\.csv': the files that this input names are read again and again")
+        self.assertRegex(
+            said,
+            r"again\.txt:\d+:\d+: error: no yarn in the file 'long\.csv': the files that this input names are read again and again",
+        )
 
     def test_many_blocks_and_uses(self):
         """Names of one kind do not cost the square of their number: a thousand of each are there at once."""
         yarn = "yarn y a\n path\n  0 0 0\n  1 0 0\n end\nend\n"
         head = "fabric 1\nthread a\n diameter 0.2\nend\n"
-        chain = head + "block b0\n" + yarn + "end\n" + "".join(f"block b{i}\nuse b{i - 1}\nend\nend\n" for i in range(1, 1000))
+        chain = (
+            head
+            + "block b0\n"
+            + yarn
+            + "end\n"
+            + "".join(f"block b{i}\nuse b{i - 1}\nend\nend\n" for i in range(1, 1000))
+        )
         said = self.fails(1, "info", self.write("chain.txt", chain + "use b999\nend\n"))
         self.assertRegex(said, r"error: more than 100 blocks use each other in turn")
         same = head + "block b\n" + yarn + "end\n" + "".join(f"use b\nplace 0 {i} 0\nend\n" for i in range(1000))
@@ -149,7 +173,9 @@ class Uses(Case):
 
     def test_edits_belong_into_the_block(self):
         text = self.write("two.txt", USES)
-        said = self.fails(1, "edit", text, "--yarn", "lower.warp_1", "--point", "2", "--to", "1,1,1", "-o", self.folder / "e.txt")
+        said = self.fails(
+            1, "edit", text, "--yarn", "lower.warp_1", "--point", "2", "--to", "1,1,1", "-o", self.folder / "e.txt"
+        )
         self.assertIn("is one of a block", said)
 
     def test_relaxed_yarns_keep_their_threads(self):
@@ -157,7 +183,7 @@ class Uses(Case):
         relaxed = self.folder / "relaxed.txt"
         self.succeeds("relax", text, "-o", relaxed)
         self.succeeds("check", relaxed)
-        self.assertIn('material glass', relaxed.read_text())
+        self.assertIn("material glass", relaxed.read_text())
 
     def test_used_files_count_for_resume(self):
         text = self.write("two.txt", USES)
@@ -170,14 +196,18 @@ class Uses(Case):
 
     def mesh(self, text, *words):
         report = self.folder / "report.json"
-        self.succeeds("mesh", text, "--matrix", "--periodic", *words, "--report", report, "-o", self.folder / "cell.inp")
+        self.succeeds(
+            "mesh", text, "--matrix", "--periodic", *words, "--report", report, "-o", self.folder / "cell.inp"
+        )
         return json.loads(report.read_text())["inputs"][0]
 
     def test_cells_of_repeats_are_meshed(self):
         jersey = "thread y\n diameter 0.2\n material epoxy\nend\nknit jersey\n thread y\n courses 2\n wales 2\nend\n"
-        twill = ("thread y\n section ellipse 0.9 0.2\n material epoxy\nend\nweave\n warp y 3 pitch 1.2\n weft y 3 pitch 1.2\n"
-                 " draft twill 2/1\nend\n")
-        head = USES[:USES.index("use file")]
+        twill = (
+            "thread y\n section ellipse 0.9 0.2\n material epoxy\nend\nweave\n warp y 3 pitch 1.2\n weft y 3 pitch 1.2\n"
+            " draft twill 2/1\nend\n"
+        )
+        head = USES[: USES.index("use file")]
         for cloth in (jersey, twill, "use file parts/weave.txt\nend\n"):
             text = self.write("one.txt", head + cloth + CELL.format(""))
             report = self.mesh(text, "--size", "0.12")

@@ -17,9 +17,9 @@ def decode(data):
     assert data[:8] == b"\x89PNG\r\n\x1a\n", data[:8]
     at, packed, header = 8, b"", None
     while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
-        assert struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0] == zlib.crc32(kind + body)
+        length, kind = struct.unpack(">I4s", data[at : at + 8])
+        body = data[at + 8 : at + 8 + length]
+        assert struct.unpack(">I", data[at + 8 + length : at + 12 + length])[0] == zlib.crc32(kind + body)
         if kind == b"IHDR":
             header = struct.unpack(">IIBBBBB", body)
         elif kind == b"IDAT":
@@ -30,7 +30,7 @@ def decode(data):
     raw, stride = zlib.decompress(packed), 3 * width
     before, rows = bytearray(stride), []
     for y in range(height):
-        form, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        form, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1 : (y + 1) * (stride + 1)])
         for i in range(stride):
             left, up = line[i - 3] if i >= 3 else 0, before[i]
             corner = before[i - 3] if i >= 3 else 0
@@ -39,7 +39,7 @@ def decode(data):
             else:
                 guess = (0, left, up, (left + up) // 2)[form]
             line[i] = (line[i] + guess) & 255
-        rows.append([tuple(line[i:i + 3]) for i in range(0, stride, 3)])
+        rows.append([tuple(line[i : i + 3]) for i in range(0, stride, 3)])
         before = line
     return width, height, rows
 
@@ -65,7 +65,9 @@ class Base(Case):
     def picture(self, text, *options, size="200x200", bar=False):
         path = self.folder / "in.txt"
         path.write_text(text)
-        self.succeeds("view", path, "-o", self.folder / "x.png", "--size", size, *options, *(() if bar else ("--no-scale-bar",)))
+        self.succeeds(
+            "view", path, "-o", self.folder / "x.png", "--size", size, *options, *(() if bar else ("--no-scale-bar",))
+        )
         width, height, rows = decode((self.folder / "x.png").read_bytes())
         self.assertEqual(f"{width}x{height}", size)
         return rows
@@ -81,6 +83,7 @@ class Pictures(Base):
         def count(gap):
             rods = (("a", GREY, "-4 0 0", "4 0 0", ""), ("b", GREY, f"0 -4 {gap}", f"0 4 {gap}", ""))
             return sum(is_magenta(pixel) for row in self.picture(fabric(*rods)) for pixel in row)
+
         self.assertEqual(count(1.05), 0)
         self.assertEqual(count(1.0), 0)  # they touch
         self.assertGreater(count(0.9), 20)
@@ -95,6 +98,7 @@ class Pictures(Base):
     def test_silhouettes_have_the_analytic_area(self):
         def covered(pixel, full=0):  # a yarn of this brightness on white
             return (255 - pixel[1]) / (255 - full)
+
         rod = fabric(("a", "0 0 0", "-2 0 0", "2 0 0", ""))
         rows = self.picture(rod, size="400x200")
         unit = sum(map(covered, rows[100])) / 4  # pixels a millimetre, by the rod's length
@@ -115,8 +119,10 @@ class Pictures(Base):
         up, half, slopes = 40, int(0.2 * unit), []
         for y in range(200, 400, 20):
             lower, upper = ([pixel[1] for pixel in rows[k]] for k in (y, y - up))
+
             def difference(shift):
-                return sum((lower[x] - upper[x + shift])**2 for x in range(150 - half, 150 + half))
+                return sum((lower[x] - upper[x + shift]) ** 2 for x in range(150 - half, 150 + half))
+
             slopes.append(min(range(-25, 26), key=difference) / up)
         return sorted(slopes)[len(slopes) // 2]
 
@@ -130,8 +136,10 @@ class Pictures(Base):
         self.assertAlmostEqual(turning, math.pi * 0.1, delta=0.04)
 
     def test_ends_are_lighter(self):
-        side, end = (self.picture(fabric(("a", RED, "-2 0 0", "2 0 0", "")), "--from", view, "--flat")[100][100][1]
-                     for view in ("front", "side"))
+        side, end = (
+            self.picture(fabric(("a", RED, "-2 0 0", "2 0 0", "")), "--from", view, "--flat")[100][100][1]
+            for view in ("front", "side")
+        )
         self.assertGreater(end, side + 20)
 
     def test_angles_are_the_named_views(self):
@@ -139,15 +147,19 @@ class Pictures(Base):
         for view, angles in (("front", (0, 0)), ("side", (90, 0)), ("back", (180, 0)), ("top", (0, 90))):
             named = self.picture(text, "--from", view, "--flat")
             turned = self.picture(text, "--azimuth", angles[0], "--elevation", angles[1], "--flat")
-            different = sum(max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(named, turned) for p, q in zip(one, two))
+            different = sum(
+                max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(named, turned) for p, q in zip(one, two)
+            )
             self.assertLess(different, 20, view)
         turned = self.picture(text, "--azimuth", 90, "--flat")
         self.assertEqual(turned, self.picture(text, "--azimuth", -270, "--flat"))
 
     def test_zoom_is_of_the_middle(self):
         rod = fabric(("a", "0 0 0", "-8 0 0", "8 0 0", ""))
+
         def thickness(*options):
             return sum(row[100][1] < 128 for row in self.picture(rod, "--flat", *options))
+
         once = thickness()
         self.assertAlmostEqual(thickness("--zoom", 4), 4 * once, delta=4)
 
@@ -156,15 +168,19 @@ class Pictures(Base):
         self.assertEqual(rows[100][100].index(max(rows[100][100])), 2)
         both = self.picture(fabric(*CROSS), "--yarns", "under", "over")
         self.assertEqual(both, self.picture(fabric(*CROSS)))
-        self.assertIn("no yarn has a name like 'x*'", self.fails(1, "view", self.folder / "in.txt", "--yarns", "x*", "-o", self.folder / "y.png"))
+        self.assertIn(
+            "no yarn has a name like 'x*'",
+            self.fails(1, "view", self.folder / "in.txt", "--yarns", "x*", "-o", self.folder / "y.png"),
+        )
 
     def test_background(self):
         self.assertEqual(self.picture(fabric(*CROSS), "--background", "1,20,255")[0][0], (1, 20, 255))
 
     def test_the_same_bytes_with_any_number_of_threads(self):
         for threads in (1, 2, 5):
-            self.succeeds("view", PATH, "-o", self.folder / f"{threads}.png", "-j", threads, "--size", "300x200",
-                          "--from", "iso")
+            self.succeeds(
+                "view", PATH, "-o", self.folder / f"{threads}.png", "-j", threads, "--size", "300x200", "--from", "iso"
+            )
         self.assertEqual(len(set(files_below(self.folder).values())), 1)
 
 
@@ -187,9 +203,13 @@ class Upright(Base):
         side = max(width, height)
         rows = self.picture(text, "--flat", *options, size=f"{side}x{side}")
         unit = 0.92 * side / max(ends, picks)
+
         def place(k, count):
             return round(side / 2 + (k + 0.5 - count / 2) * unit)
-        return ["".join(str(int(is_blue(rows[place(j, picks)][place(i, ends)]))) for i in range(ends)) for j in range(picks)]
+
+        return [
+            "".join(str(int(is_blue(rows[place(j, picks)][place(i, ends)]))) for i in range(ends)) for j in range(picks)
+        ]
 
     def weave(self, draft, ends, picks, colors=(" color 40 40 200\n", " color 200 40 40\n")):
         return WEAVE.format(*colors, ends, picks, draft)
@@ -240,10 +260,20 @@ class Upright(Base):
 class Colors(Base):
     def test_roles_where_the_text_gives_none(self):
         # A section shows the very colour.
-        yarns = [("warp", (46, 98, 150)), ("weft", (205, 140, 52)), ("wale", (72, 128, 92)), ("course", (58, 130, 140)),
-                 ("braider", (150, 84, 120)), ("axial", (120, 116, 66)), ("binder", (176, 72, 60)), ("other", (140, 146, 150))]
+        yarns = [
+            ("warp", (46, 98, 150)),
+            ("weft", (205, 140, 52)),
+            ("wale", (72, 128, 92)),
+            ("course", (58, 130, 140)),
+            ("braider", (150, 84, 120)),
+            ("axial", (120, 116, 66)),
+            ("binder", (176, 72, 60)),
+            ("other", (140, 146, 150)),
+        ]
         text = "fabric 1\nthread t\n diameter 1\nend\n" + "".join(
-            f"yarn y{k} t\n role {role}\n path\n  -2 {2 * k} 0\n  2 {2 * k} 0\n end\nend\n" for k, (role, _) in enumerate(yarns))
+            f"yarn y{k} t\n role {role}\n path\n  -2 {2 * k} 0\n  2 {2 * k} 0\n end\nend\n"
+            for k, (role, _) in enumerate(yarns)
+        )
         rows = self.picture(text, "--section", "x=0", size="800x200")
         unit = 0.5 * (800 - 16) / 7.5  # y from -0.5 to 14.5
         for k, (role, color) in enumerate(yarns):
@@ -252,7 +282,9 @@ class Colors(Base):
             self.assertLess(max(abs(min(255, shade * c) - s) for c, s in zip(color, seen)), 1, (role, seen))
         # What the text says stays.
         text = text.replace(" diameter 1\n", " diameter 1\n color 200 200 200\n")
-        self.assertEqual(self.picture(text, "--section", "x=0", size="800x200")[100][round(400 - 7 * unit)], (200, 200, 200))
+        self.assertEqual(
+            self.picture(text, "--section", "x=0", size="800x200")[100][round(400 - 7 * unit)], (200, 200, 200)
+        )
 
     @unittest.skipUnless(HAS_PAGES, NO_PAGES)
     def test_the_page_has_the_same(self):
@@ -304,23 +336,38 @@ class Sections(Base):
         self.assertGreater(self.full(rows), 100)
         turned = self.picture(self.ROD, "--section", "x=0", "--azimuth", "90")
         side = self.picture(self.ROD, "--section", "x=0", "--from", "side")
-        self.assertLess(sum(max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(turned, side) for p, q in zip(one, two)), 20)
+        self.assertLess(
+            sum(max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(turned, side) for p, q in zip(one, two)),
+            20,
+        )
 
     def test_what_is_left_lies_in_the_light(self):
         # Nothing that was cut away shades what is left.
-        pins = [(f"p{x}{y}", GREY, f"{x}3.9 {y}1.4 -0.5", f"{x}3.9 {y}1.4 0.6", "diameter 0.1") for x in "+-" for y in "+-"]
+        pins = [
+            (f"p{x}{y}", GREY, f"{x}3.9 {y}1.4 -0.5", f"{x}3.9 {y}1.4 0.6", "diameter 0.1") for x in "+-" for y in "+-"
+        ]
         pins = [(name.replace("+", "a").replace("-", "b"), *rest) for name, *rest in pins]
         low = ("low", GREY, "-3.5 0 0", "3.5 0 0", "")
         covers = [(f"h{k}", RED, f"-3.5 {0.9 * k - 0.9} 2", f"3.5 {0.9 * k - 0.9} 2", "") for k in range(3)]
-        free, uncovered = (self.picture(fabric(low, *pins, *more), "--section", "z=0.45", "--from", "top", size="400x200") for more in ((), covers))
-        different = sum(max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(free, uncovered) for p, q in zip(one, two))
+        free, uncovered = (
+            self.picture(fabric(low, *pins, *more), "--section", "z=0.45", "--from", "top", size="400x200")
+            for more in ((), covers)
+        )
+        different = sum(
+            max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(free, uncovered) for p, q in zip(one, two)
+        )
         self.assertLess(different, 20)
         self.assertNotEqual(free, self.picture(fabric(low, *pins, *covers), "--from", "top", size="400x200"))
 
     def test_overlaps_are_marked(self):
         def count(gap, plane):
             rods = (("a", GREY, "-4 0 0", "4 0 0", ""), ("b", GREY, f"0 -4 {gap}", f"0 4 {gap}", ""))
-            return sum(is_magenta(p) for row in self.picture(fabric(*rods), "--section", plane, "--from", "top", size="400x400") for p in row)
+            return sum(
+                is_magenta(p)
+                for row in self.picture(fabric(*rods), "--section", plane, "--from", "top", size="400x400")
+                for p in row
+            )
+
         self.assertEqual(count(1.0, "z=0.5"), 0)  # they touch there
         self.assertEqual(count(1.05, "z=0.4"), 0)
         self.assertGreater(count(0.9, "z=0.45"), 20)
@@ -335,7 +382,9 @@ class Sections(Base):
         self.assertEqual(rows[100][180], (140, 146, 150))
 
     def test_a_ring_is_cut_twice(self):
-        self.succeeds("view", RING, "--section", "x=0", "-o", self.folder / "x.png", "--no-scale-bar", "--size", "400x300")
+        self.succeeds(
+            "view", RING, "--section", "x=0", "-o", self.folder / "x.png", "--no-scale-bar", "--size", "400x300"
+        )
         row = decode((self.folder / "x.png").read_bytes())[2][150]
         color = (140, 146, 150)  # of a yarn without a role
         runs = re.findall("1{8,}", "".join(str(int(pixel == color)) for pixel in row))
@@ -347,16 +396,33 @@ class Sections(Base):
         self.picture(self.ROD)
         source, target = self.folder / "in.txt", self.folder / "y.png"
         for word in ("w=0", "z", "z=", "z=low", "z=nan", "=1", "", "z=0mm"):
-            self.assertRegex(self.fails(2, "view", source, "-o", target, "--section", word), "is no section; it is x=, y= or z=")
+            self.assertRegex(
+                self.fails(2, "view", source, "-o", target, "--section", word), "is no section; it is x=, y= or z="
+            )
         message = self.fails(1, "view", source, "-o", target, "--section", "z=0.7")
         self.assertRegex(message, r"the section z=0\.7 cuts no yarn; they reach from -0\.50*\d? to 0\.50*\d?\n")
         self.assertIn("cuts no yarn", self.fails(1, "view", source, "-o", target, "--section", "x=-2.1"))
-        self.assertIn("--section is of pictures", self.fails(1, "view", source, "-o", self.folder / "y.html", "--section", "z=0"))
+        self.assertIn(
+            "--section is of pictures", self.fails(1, "view", source, "-o", self.folder / "y.html", "--section", "z=0")
+        )
         self.assertEqual(sorted(files_below(self.folder)), ["in.txt", "x.png"])
 
     def test_the_same_bytes_with_any_number_of_threads(self):
         for threads in (1, 2, 5):
-            self.succeeds("view", PATH, "-o", self.folder / f"{threads}.png", "-j", threads, "--size", "300x200", "--from", "iso", "--section", "y=1")
+            self.succeeds(
+                "view",
+                PATH,
+                "-o",
+                self.folder / f"{threads}.png",
+                "-j",
+                threads,
+                "--size",
+                "300x200",
+                "--from",
+                "iso",
+                "--section",
+                "y=1",
+            )
         self.assertEqual(len(set(files_below(self.folder).values())), 1)
 
 
@@ -366,7 +432,9 @@ class ScaleBar(Base):
         rows = self.picture(text, "--flat", *options, size=size, bar=True)
         whole = self.picture(text, "--flat", *options, size=size)
         width, height = map(int, size.split("x"))
-        ink = {(x, y) for y in range(round(height * 0.9), height) for x in range(width) if self.is_ink(rows[y][x], ground)}
+        ink = {
+            (x, y) for y in range(round(height * 0.9), height) for x in range(width) if self.is_ink(rows[y][x], ground)
+        }
         return self.parts(ink), rows, whole
 
     @staticmethod
@@ -386,7 +454,9 @@ class ScaleBar(Base):
                     if near in ink:
                         ink.remove(near)
                         todo.append(near)
-            found.append((min(x for x, _ in part), max(x for x, _ in part), min(y for _, y in part), max(y for _, y in part)))
+            found.append(
+                (min(x for x, _ in part), max(x for x, _ in part), min(y for _, y in part), max(y for _, y in part))
+            )
         return sorted(found)
 
     def rod(self, length, units="mm"):
@@ -395,8 +465,18 @@ class ScaleBar(Base):
 
     def test_its_length_is_round_and_true(self):
         # A rod of a known length fills the picture's width but for 4 % of the smaller side of what is above the foot.
-        for length, units, bar, signs in ((4, "mm", 1, 3), (9.9, "mm", 2, 3), (21, "mm", 5, 3), (0.004, "mm", 0.001, 3), (4, "cm", 1, 4),
-                                          (1, "inch", 0.2, 8), (1.7, "m", 0.2, 5), (200, "um", 50, 4), (2, "mm", 0.5, 5), (5, "m", 1, 2)):
+        for length, units, bar, signs in (
+            (4, "mm", 1, 3),
+            (9.9, "mm", 2, 3),
+            (21, "mm", 5, 3),
+            (0.004, "mm", 0.001, 3),
+            (4, "cm", 1, 4),
+            (1, "inch", 0.2, 8),
+            (1.7, "m", 0.2, 5),
+            (200, "um", 50, 4),
+            (2, "mm", 0.5, 5),
+            (5, "m", 1, 2),
+        ):
             with self.subTest(f"{length} {units}"):
                 parts, rows, _ = self.foot(self.rod(length, units))
                 left, right = parts[0][:2]
@@ -426,7 +506,12 @@ class ScaleBar(Base):
             self.assertEqual(len(letters), 3)
             self.assertGreaterEqual(max(low - top for _, _, top, low in letters) + 1, max(8, 0.02 * height), size)
         # Light on dark.
-        parts, _, _ = self.foot(self.rod(4).replace("0 0 0\n role", "").replace("color 0 0 0", "color 200 200 200"), "--background", "0,0,60", ground=(0, 0, 60))
+        parts, _, _ = self.foot(
+            self.rod(4).replace("0 0 0\n role", "").replace("color 0 0 0", "color 200 200 200"),
+            "--background",
+            "0,0,60",
+            ground=(0, 0, 60),
+        )
         self.assertEqual(len(parts), 4)
 
     def test_small_pictures_have_none(self):
@@ -448,8 +533,12 @@ class Files(Case):
 
     def test_resume_goes_by_the_options_too(self):
         report, picture = self.folder / "r.json", self.folder / "x.png"
+
         def again(*options):
-            return self.succeeds("view", GRID, "-o", picture, "--size", "40x30", "--report", report, "--resume", *options).stderr
+            return self.succeeds(
+                "view", GRID, "-o", picture, "--size", "40x30", "--report", report, "--resume", *options
+            ).stderr
+
         again()
         self.assertIn("up to date", again())
         self.assertNotIn("up to date", again("--from", "iso"))

@@ -9,8 +9,12 @@ import numpy as np
 
 from program import Case, SAMPLES, run
 
-FIELDS = {"phase": (np.uint16, ()), "yarn_fraction": (np.float32, ()), "fibre_fraction": (np.float32, ()),
-          "orientation": (np.float32, (3,))}
+FIELDS = {
+    "phase": (np.uint16, ()),
+    "yarn_fraction": (np.float32, ()),
+    "fibre_fraction": (np.float32, ()),
+    "orientation": (np.float32, (3,)),
+}
 
 
 class Voxels(Case):
@@ -61,13 +65,21 @@ class Voxels(Case):
 
     def test_fractions_are_those_of_the_volumes(self):
         """Of each yarn, to 1e-3 of its volume, those that the faces of the cell cut, too (`convert --cut`: OpenCASCADE's solids)."""
-        for name, count in (("cell_plain", 30), ("cell_satin5", 64), ("cell_orthogonal", 50), ("cell_jersey", 40), ("twill_cell", 64)):
+        for name, count in (
+            ("cell_plain", 30),
+            ("cell_satin5", 64),
+            ("cell_orthogonal", 50),
+            ("cell_jersey", 40),
+            ("twill_cell", 64),
+        ):
             sample = SAMPLES / (name + ".txt")
             # The same yarns: by default constructions leave a gap between theirs where they are cut, and none on voxels.
             *_, report = self.made(sample, count, "--gap", "0.02", names=("cell.npz",))
             self.succeeds("convert", sample, "--gap", "0.02", "--cut", "-o", self.folder / "cut.step")
             volumes = {}
-            for part in json.loads(self.succeeds("info", "--json", self.folder / "cut.step").stdout)["inputs"][0]["parts"]:
+            for part in json.loads(self.succeeds("info", "--json", self.folder / "cut.step").stdout)["inputs"][0][
+                "parts"
+            ]:
                 name_of_yarn = part["name"].split(".part")[0]
                 volumes[name_of_yarn] = volumes.get(name_of_yarn, 0) + part["volume"]
             size = np.prod(report["voxels"]["lengths"])
@@ -81,9 +93,14 @@ class Voxels(Case):
         their direction in space, and the voxels that have their middles in the ellipses."""
         places_across = (-0.9, 0.1, 1.1)
         text = self.folder / "rhomb.txt"
-        text.write_text("fabric 1\ntolerance 1e-4\nthread tow\n  section ellipse 0.6 0.4\nend\n"
-                        + "".join(f"yarn y{n} tow\n  path chord\n    -3 {y} 0.3\n    6 {y} 0.3\n  end\nend\n" for n, y in enumerate(places_across)) +
-                        "cell vectors 2 -1 0  2 1 0  0 0 0.6 at -0.5 0 0\n  periodic x y\nend\n")
+        text.write_text(
+            "fabric 1\ntolerance 1e-4\nthread tow\n  section ellipse 0.6 0.4\nend\n"
+            + "".join(
+                f"yarn y{n} tow\n  path chord\n    -3 {y} 0.3\n    6 {y} 0.3\n  end\nend\n"
+                for n, y in enumerate(places_across)
+            )
+            + "cell vectors 2 -1 0  2 1 0  0 0 0.6 at -0.5 0 0\n  periodic x y\nend\n"
+        )
         h5, npz, report = self.made(text, 48)
         with np.load(npz) as arrays, h5py.File(h5) as file:
             np.testing.assert_array_equal(file["vectors"], arrays["vectors"])
@@ -92,8 +109,10 @@ class Voxels(Case):
             shares, phase = arrays["yarn_fraction"], arrays["phase"]
             self.assertAlmostEqual(shares.mean(dtype=float) * 4 * 0.6, 4 * np.pi * 0.3 * 0.2, delta=4e-4)
             k, j, i = np.indices(shares.shape)
-            places = arrays["origin"] + sum((index + 0.5)[..., None] / size * vector for index, size, vector in
-                                            zip((i, j, k), reversed(shares.shape), arrays["vectors"]))
+            places = arrays["origin"] + sum(
+                (index + 0.5)[..., None] / size * vector
+                for index, size, vector in zip((i, j, k), reversed(shares.shape), arrays["vectors"])
+            )
             for n, y in enumerate(places_across, 1):
                 radius = np.hypot((places[..., 1] - y) / 0.3, (places[..., 2] - 0.3) / 0.2)
                 self.assertTrue((phase[radius < 0.85] == n).all())

@@ -35,9 +35,11 @@ class Zoo(IgesTrip):
             'SetFactory("OpenCASCADE");\n'
             f'v() = ShapeFromFile("{step.name}");\n'
             'w() = Volume{:};\nFor i In {0:#w()-1}\nm() = Mass Volume{w(i)};\nPrintf("mass %.16g", m(0));\nEndFor\n'
-            's() = Surface{:};\nPrintf("faces %g", #s());\n')
-        done = subprocess.run([GMSH, script.name, "-parse_and_exit"], cwd=self.folder, capture_output=True, text=True,
-                              timeout=600)
+            's() = Surface{:};\nPrintf("faces %g", #s());\n'
+        )
+        done = subprocess.run(
+            [GMSH, script.name, "-parse_and_exit"], cwd=self.folder, capture_output=True, text=True, timeout=600
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         faces = re.search(r"faces (\d+)", done.stdout)
         self.assertIsNotNone(faces, done.stdout + done.stderr)

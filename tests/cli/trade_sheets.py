@@ -42,7 +42,7 @@ def tex_of(yarn):
     if len(yarns_of(yarn)) > 1:
         return sum(map(tex_of, yarns_of(yarn))) / len(yarns_of(yarn))
     if match := re.fullmatch(r"([\d.]+) mm ([\d.]+)", yarn):
-        return 1000 * float(match[2]) * math.pi / 4 * float(match[1])**2
+        return 1000 * float(match[2]) * math.pi / 4 * float(match[1]) ** 2
     word, value = yarn.split()
     return TEX[word](float(value))
 
@@ -79,8 +79,12 @@ def lines_of(path, *options):
                 across = number["side_z"] * number["width_mm"] / 2
                 up = number["up_z"] * number["height_mm"] / 2
                 yarns.setdefault(row["yarn"], []).append(
-                    Point(tuple(number[f"{axis}_mm"] for axis in "xyz"),
-                          tuple(number[f"tangent_{axis}"] for axis in "xyz"), math.hypot(across, up)))
+                    Point(
+                        tuple(number[f"{axis}_mm"] for axis in "xyz"),
+                        tuple(number[f"tangent_{axis}"] for axis in "xyz"),
+                        math.hypot(across, up),
+                    )
+                )
         return yarns
 
 
@@ -131,8 +135,10 @@ def measured(sheet, path=None):
         shares = [crimp(points, axis, pitch, len(threads)) for points in threads]
         built[f"{system} crimp"] = 100 * sum(shares) / len(shares)
         yarns_in_turn = yarns_of(sheet[system])
-        mass += sum(tex_of(yarns_in_turn[i % len(yarns_in_turn)]) * (1 + share) / (own * len(shares))
-                    for i, share in enumerate(shares))
+        mass += sum(
+            tex_of(yarns_in_turn[i % len(yarns_in_turn)]) * (1 + share) / (own * len(shares))
+            for i, share in enumerate(shares)
+        )
     built["mass"] = mass
     return built
 
@@ -163,8 +169,10 @@ def shown(value):
 
 
 def table():
-    rows = ["| cloth | from | thickness, mm | mass, g/m2 | warp crimp, % | weft crimp, % | straight, g/m2 | unasked, mm | outside |",
-            "|---|---|---|---|---|---|---|---|---|"]
+    rows = [
+        "| cloth | from | thickness, mm | mass, g/m2 | warp crimp, % | weft crimp, % | straight, g/m2 | unasked, mm | outside |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for sheet in sheets():
         built, wanted = measured(sheet), published(sheet)
         cells = [f"`{sheet['cloth']}`", sheet["kind"]]

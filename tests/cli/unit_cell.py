@@ -78,12 +78,24 @@ def jacobians(points, cells, at):
     return np.linalg.det(np.einsum("eni,nj->eij", points[cells], slopes))
 
 
-CORNERS_AND_MIDDLES = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (.5, 0, 0), (.5, .5, 0), (0, .5, 0), (0, 0, .5),
-                       (.5, 0, .5), (0, .5, .5), (.25, .25, .25)]
-A, B = (5 + 3 * 5 ** .5) / 20, (5 - 5 ** .5) / 20
+CORNERS_AND_MIDDLES = [
+    (0, 0, 0),
+    (1, 0, 0),
+    (0, 1, 0),
+    (0, 0, 1),
+    (0.5, 0, 0),
+    (0.5, 0.5, 0),
+    (0, 0.5, 0),
+    (0, 0, 0.5),
+    (0.5, 0, 0.5),
+    (0, 0.5, 0.5),
+    (0.25, 0.25, 0.25),
+]
+A, B = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
 # The determinant is a cubic: the rule of degree three with five points.
-DEGREE_3 = [((.25, .25, .25), -4 / 5)] + [(p, 9 / 20) for p in
-                                          ((.5, 1 / 6, 1 / 6), (1 / 6, .5, 1 / 6), (1 / 6, 1 / 6, .5), (1 / 6, 1 / 6, 1 / 6))]
+DEGREE_3 = [((0.25, 0.25, 0.25), -4 / 5)] + [
+    (p, 9 / 20) for p in ((0.5, 1 / 6, 1 / 6), (1 / 6, 0.5, 1 / 6), (1 / 6, 1 / 6, 0.5), (1 / 6, 1 / 6, 1 / 6))
+]
 
 
 def volumes(points, cells):
@@ -105,8 +117,11 @@ def dihedral_angles(points, cells):
     p = points[cells[:, :4]]
     normals = [np.cross(p[:, b] - p[:, a], p[:, c] - p[:, a]) for a, b, c in FACES]  # outward
     normals = [n / np.linalg.norm(n, axis=1, keepdims=True) for n in normals]
-    angles = [180 - np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", normals[a], normals[b]), -1, 1)))
-              for a in range(4) for b in range(a)]
+    angles = [
+        180 - np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", normals[a], normals[b]), -1, 1)))
+        for a in range(4)
+        for b in range(a)
+    ]
     return np.array(angles).T
 
 
@@ -134,6 +149,8 @@ def opposite_miss(points, low, high, axis):
     if len(a) != len(b) or len(a) == 0:
         return np.inf
     grid = 1e-7 * (high - low).max()
+
     def ordered(p):
         return p[np.lexsort(np.round(p / grid).T)]
+
     return np.abs(ordered(a) - ordered(b)).max()

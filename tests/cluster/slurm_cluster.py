@@ -79,13 +79,25 @@ class SlurmCluster:
         text += "PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP\n"
         (self.folder / "slurm.conf").write_text(text)
         os.environ["SLURM_CONF"] = str(self.folder / "slurm.conf")
-        self.run("munged", "munged", "--foreground", "--force", f"--socket={self.folder}/munge.socket", f"--key-file={key}",
-                 f"--pid-file={self.folder}/munged.pid", f"--log-file={self.folder}/munged.log", f"--seed-file={self.folder}/munge.seed")
+        self.run(
+            "munged",
+            "munged",
+            "--foreground",
+            "--force",
+            f"--socket={self.folder}/munge.socket",
+            f"--key-file={key}",
+            f"--pid-file={self.folder}/munged.pid",
+            f"--log-file={self.folder}/munged.log",
+            f"--seed-file={self.folder}/munge.seed",
+        )
         wait_for((self.folder / "munge.socket").exists, "munge answers")
         self.run("slurmctld", "slurmctld", "-D", "-c")
         for node in self.nodes:
             self.start_node(node)
-        wait_for(lambda: self.asked("sinfo", "-h", "-t", "idle", "-o", "%D").strip() == str(len(self.nodes)), "all nodes are idle")
+        wait_for(
+            lambda: self.asked("sinfo", "-h", "-t", "idle", "-o", "%D").strip() == str(len(self.nodes)),
+            "all nodes are idle",
+        )
 
     def run(self, name, program, *words):
         found = shutil.which(program, path=os.environ["PATH"] + ":/usr/sbin")

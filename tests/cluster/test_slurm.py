@@ -50,8 +50,15 @@ class Slurm(Case):
         self.cluster.start()
 
     def start(self, *arguments, **more):
-        return subprocess.Popen([DRIVER, "in", "-o", "out", "--selvage", PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
-                                stderr=subprocess.PIPE, text=True, env=environment(**more), start_new_session=True)
+        return subprocess.Popen(
+            [DRIVER, "in", "-o", "out", "--selvage", PROGRAM, *arguments],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment(**more),
+            start_new_session=True,
+        )
 
     def drive(self, code, *arguments, **more):
         running = self.start(*arguments, **more)
@@ -67,7 +74,11 @@ class Slurm(Case):
         """Every file's bytes, and the report but for its times."""
         done = run("convert", "in", "-o", "one", "--to", "iges", "--report", "one.json", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        ours = {name: data for name, data in files_below(self.folder / "out").items() if name != "report.json" and not name.startswith(".slurm")}
+        ours = {
+            name: data
+            for name, data in files_below(self.folder / "out").items()
+            if name != "report.json" and not name.startswith(".slurm")
+        }
         self.assertEqual(ours, files_below(self.folder / "one"))
         alone = json.loads((self.folder / "one.json").read_text().replace('"one/', '"out/'))
         self.assertEqual(without_times(self.report()), without_times(alone))
@@ -83,7 +94,9 @@ class Slurm(Case):
         wait_for(lambda: ended.is_dir() and len(list(ended.iterdir())) >= 8, "some shards ended")
         wait_for(lambda: len(self.cluster.processes_on("node2")) > 1, "a job runs on the node that will be lost")
         self.assertTrue(self.cluster.lose_node("node2"))
-        self.assertLess(len(list(ended.iterdir())), 36, "most is done already; the node was lost too late to prove something")
+        self.assertLess(
+            len(list(ended.iterdir())), 36, "most is done already; the node was lost too late to prove something"
+        )
         told = running.communicate(timeout=600)[1]
         self.assertEqual(running.returncode, 0, told)
         self.assertRegex(told, r"shard \d+ \(job \d+_\d+ on node2\): lost \(NODE_FAIL\); it is done again elsewhere")
@@ -166,10 +179,20 @@ class NoSlurm(Case):
         put_rods(self.folder / "in", 1)
         (self.folder / "programs").mkdir()
         os.symlink("/usr/bin/python3", self.folder / "programs" / "python3")
-        done = subprocess.run([DRIVER, "in", "-o", "out", "--selvage", PROGRAM], cwd=self.folder, stderr=subprocess.PIPE, text=True,
-                              env=environment(PATH=str(self.folder / "programs")))
+        done = subprocess.run(
+            [DRIVER, "in", "-o", "out", "--selvage", PROGRAM],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment(PATH=str(self.folder / "programs")),
+        )
         self.assertEqual(done.returncode, 2)
-        for part in ("sbatch is not found", "apt-get install slurm-wlm", "selvage convert INPUT... -o OUT", "--shard 0/4"):
+        for part in (
+            "sbatch is not found",
+            "apt-get install slurm-wlm",
+            "selvage convert INPUT... -o OUT",
+            "--shard 0/4",
+        ):
             self.assertIn(part, done.stderr)
         self.assertFalse((self.folder / "out").exists())
 

@@ -19,8 +19,30 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from program import PROGRAM, ROD
 
 LIBRARY = os.path.abspath(os.environ["SELVAGE_FAULTS"])
-CALLS = ["write", "pwrite", "read", "pread", "fsync", "ftruncate", "rename", "renameat2", "linkat", "flock", "open", "mkdir", "mmap",
-         "memfd_create", "fork", "pipe2", "signalfd", "fstat", "poll", "posix_spawn", "pthread_create", "dlopen"]
+CALLS = [
+    "write",
+    "pwrite",
+    "read",
+    "pread",
+    "fsync",
+    "ftruncate",
+    "rename",
+    "renameat2",
+    "linkat",
+    "flock",
+    "open",
+    "mkdir",
+    "mmap",
+    "memfd_create",
+    "fork",
+    "pipe2",
+    "signalfd",
+    "fstat",
+    "poll",
+    "posix_spawn",
+    "pthread_create",
+    "dlopen",
+]
 POINTS = 4  # of one call in one command, without --all
 PATIENCE = 120  # seconds; a run takes less than one
 README = pathlib.Path(__file__).with_name("README.md")
@@ -36,7 +58,10 @@ COMMANDS = {
     "view": (["a.png"], ["view", "{in}/a.txt", "-o", "{out}/a.png"]),
     "diff": ([], ["diff", "{in}/a.txt", "{in}/b.txt"]),
     "roundtrip": ([], ["roundtrip", "{in}/a.txt"]),
-    "edit": (["e.txt"], ["edit", "{in}/a.txt", "--yarn", "one", "--point", "2", "--to", "1,0,0.2", "-o", "{out}/e.txt"]),
+    "edit": (
+        ["e.txt"],
+        ["edit", "{in}/a.txt", "--yarn", "one", "--point", "2", "--to", "1,0,0.2", "-o", "{out}/e.txt"],
+    ),
     "relax": (["a.txt"], ["relax", "{in}/a.txt", "-o", "{out}"]),
 }
 
@@ -57,8 +82,11 @@ class Run:
                 (folder / "out" / name).write_bytes(OLD)
             self.start(folder, [word.replace("{in}", "in").replace("{out}", "out") for word in words], call, at, within)
             self.files = {path.name: path.read_bytes() for path in (folder / "out").iterdir()}
-            self.left = [str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()
-                         and path.parent.name != "out" and path.name not in ("a.txt", "b.txt")]
+            self.left = [
+                str(path.relative_to(folder))
+                for path in folder.rglob("*")
+                if path.is_file() and path.parent.name != "out" and path.name not in ("a.txt", "b.txt")
+            ]
             self.left += [str(path.relative_to(folder)) for path in (folder / "tmp").iterdir()]
         finally:
             shutil.rmtree(folder)
@@ -67,11 +95,27 @@ class Run:
         page = os.memfd_create("faults", 0)
         try:
             os.ftruncate(page, 4096)
-            surroundings = {**os.environ, "LD_PRELOAD": LIBRARY, "FAULT_CALL": call, "FAULT_AT": at, "FAULT_IN": within,
-                            "FAULT_PAGE": str(page), "TMPDIR": str(folder / "tmp"), "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": "C"}
-            process = subprocess.Popen([PROGRAM, *words, "-j1"] if words[0] != "edit" else [PROGRAM, *words], cwd=folder,
-                                       env=surroundings, pass_fds=[page], start_new_session=True, stdin=subprocess.DEVNULL,
-                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            surroundings = {
+                **os.environ,
+                "LD_PRELOAD": LIBRARY,
+                "FAULT_CALL": call,
+                "FAULT_AT": at,
+                "FAULT_IN": within,
+                "FAULT_PAGE": str(page),
+                "TMPDIR": str(folder / "tmp"),
+                "SOURCE_DATE_EPOCH": "1700000000",
+                "LC_ALL": "C",
+            }
+            process = subprocess.Popen(
+                [PROGRAM, *words, "-j1"] if words[0] != "edit" else [PROGRAM, *words],
+                cwd=folder,
+                env=surroundings,
+                pass_fds=[page],
+                start_new_session=True,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+            )
             try:
                 self.stdout, self.stderr = process.communicate(timeout=PATIENCE)
                 self.hung = False
@@ -128,16 +172,23 @@ def sweep(command, call, every, within, pool):
             total += 1 + total // 4
             runs.append(Run(command, call, plan[-1], old, within))
         faults += sum(run.faults > 0 for run in runs)
-        found += [f"{command}, {call} {at}{' over old outputs' if old else ''}: {wrong}\n"
-                  f"    {run.stderr.decode(errors='replace').strip()}"
-                  for at, run in zip(plan, runs) for wrong in run.violations(whole, old)]
+        found += [
+            f"{command}, {call} {at}{' over old outputs' if old else ''}: {wrong}\n"
+            f"    {run.stderr.decode(errors='replace').strip()}"
+            for at, run in zip(plan, runs)
+            for wrong in run.violations(whole, old)
+        ]
     return most, faults, found
 
 
 def read_table(within):
     """{(command, call): what stands in the table of README.md}."""
     _, _, section = README.read_text().partition(HEADINGS[within])
-    rows = [[word.strip(" `") for word in line.strip("|").split("|")] for line in section.partition("\n#")[0].splitlines() if line.startswith("|")]
+    rows = [
+        [word.strip(" `") for word in line.strip("|").split("|")]
+        for line in section.partition("\n#")[0].splitlines()
+        if line.startswith("|")
+    ]
     return {(command, row[0]): cell for row in rows[2:-1] for command, cell in zip(rows[0][1:], row[1:]) if cell != "-"}
 
 
@@ -153,21 +204,42 @@ def write_tables(within, swept, cells):
         commands = [c for c in COMMANDS if any(c == command for command, _ in table)]
         total = sum(int(cell.partition("/")[0]) for cell in table.values())
         rows = [["", *(f"`{c}`" for c in commands)], ["---", *["--:"] * len(commands)]]
-        rows += [[f"`{call}`", *(table.get((c, call), "-") for c in commands)] for call in CALLS if any(k[1] == call for k in table)]
-        rows.append(["all", *(str(sum(int(cell.partition("/")[0]) for k, cell in table.items() if k[0] == c)) for c in commands)])
-        parts += [f"\n{HEADINGS[part]}\nGenerated by `sweep.py --all{' --in parent' if part == 'parent' else ''} --table`: do not edit. "
-                  f"{total} faults, by call and command;\nwhere something was wrong afterwards the number of violations stands after a "
-                  "stroke.\n\n", *(f"| {' | '.join(row)} |\n" for row in rows)]
+        rows += [
+            [f"`{call}`", *(table.get((c, call), "-") for c in commands)]
+            for call in CALLS
+            if any(k[1] == call for k in table)
+        ]
+        rows.append(
+            [
+                "all",
+                *(str(sum(int(cell.partition("/")[0]) for k, cell in table.items() if k[0] == c)) for c in commands),
+            ]
+        )
+        parts += [
+            f"\n{HEADINGS[part]}\nGenerated by `sweep.py --all{' --in parent' if part == 'parent' else ''} --table`: do not edit. "
+            f"{total} faults, by call and command;\nwhere something was wrong afterwards the number of violations stands after a "
+            "stroke.\n\n",
+            *(f"| {' | '.join(row)} |\n" for row in rows),
+        ]
     # What other programs write there stays.
-    parts += [f"\n## {rest}" for rest in README.read_text().split("\n## ")[1:] if f"## {rest.partition(chr(10))[0]}\n" not in HEADINGS.values()]
+    parts += [
+        f"\n## {rest}"
+        for rest in README.read_text().split("\n## ")[1:]
+        if f"## {rest.partition(chr(10))[0]}\n" not in HEADINGS.values()
+    ]
     README.write_text("".join(parts))
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--all", action="store_true", help="every point")
-    parser.add_argument("--in", dest="within", choices=["all", "parent"], default="all",
-                        help="calls of all processes, or of the first one alone")
+    parser.add_argument(
+        "--in",
+        dest="within",
+        choices=["all", "parent"],
+        default="all",
+        help="calls of all processes, or of the first one alone",
+    )
     parser.add_argument("--table", action="store_true", help="write the results into README.md")
     parser.add_argument("--call", action="append", help="only this call")
     parser.add_argument("commands", nargs="*", metavar="COMMAND")

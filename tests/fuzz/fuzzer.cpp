@@ -19,10 +19,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
     if (const std::string_view word = (*arguments)[i]; word.starts_with(option))
       target = selvage::fuzz::target_named(word.substr(option.size()));
   if (target != nullptr) return 0;
-  // What scripts/fuzz asks for: one line a target.
-  for (const selvage::fuzz::Target& known : selvage::fuzz::targets())
-    std::cout << known.name << '\t' << known.seeds << '\t' << known.most << '\t' << known.does << '\n';
-  std::cout.flush();
+  std::cout << selvage::fuzz::target_lines() << std::flush;  // what scripts/fuzz asks for
   std::_Exit(0);
 }
 

@@ -1,4 +1,5 @@
-// replay TARGET FILE|FOLDER...: runs the target on files, as a fuzzer would, without a fuzzer.
+// replay TARGET FILE|FOLDER...: runs the target on files, as a fuzzer would, without a fuzzer. replay --list:
+// the targets.
 #include <filesystem>
 #include <iostream>
 
@@ -19,6 +20,10 @@ std::vector<fs::path> files_of(const fs::path& path) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  if (count == 2 && std::string_view(arguments[1]) == "--list") {
+    std::cout << selvage::fuzz::target_lines();
+    return 0;
+  }
   const selvage::fuzz::Target* target = count > 2 ? selvage::fuzz::target_named(arguments[1]) : nullptr;
   if (target == nullptr) {
     std::cerr << "usage: fuzz_replay TARGET FILE|FOLDER...; targets:";

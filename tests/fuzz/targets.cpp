@@ -1,5 +1,7 @@
 #include "fuzz/targets.h"
 
+#include <fmt/format.h>
+
 #include "contact/contact.h"
 #include "core/findings.h"
 #include "core/text_report.h"
@@ -12,6 +14,9 @@
 #include "formats/step/inspect.h"
 #include "fuzz/expression_text.h"
 #include "fuzz/fabric_text.h"
+#include "fuzz/field_mesh.h"
+#include "fuzz/reports.h"
+#include "fuzz/several_files.h"
 
 namespace selvage::fuzz {
 
@@ -54,9 +59,12 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
   const auto reads = [&](auto* reader) {
     return reader != nullptr && reader(source, diagnostics).has_value();
   };
-  const bool has_read = reads(format.read_fabric) || reads(format.read_model) || reads(format.read_points) ||
-                        reads(format.read_mesh) || reads(format.read_deck);
+  std::optional<fem::FieldMesh> mesh;
+  if (format.read_mesh != nullptr) mesh = format.read_mesh(source, diagnostics);
+  const bool has_read = mesh || reads(format.read_fabric) || reads(format.read_model) ||
+                        reads(format.read_points) || reads(format.read_deck);
   if (has_read == diagnostics.has_errors()) std::abort();
+  if (mesh) evaluate(*mesh);
   // What takes as long as reading and is the same for most inputs: one in four has it done.
   if (bytes.size() % 4 != 0) return;
   for (const Message& message : diagnostics.messages()) static_cast<void>(to_string(message));
@@ -178,7 +186,11 @@ std::vector<Target> all_targets() {
     if (format->is_readable() || format->read_mesh != nullptr || format->read_deck != nullptr)
       list.push_back({std::string(format->name), "reads", std::string(format->extensions.front()), 1024,
                       [format](std::string_view bytes) { run_reader(*format, bytes); }});
-  for (Target& target : list)
+  for (Target& target : list) {
+    // Files with several blocks of numbers, or in XML, are not that small.
+    if (const std::string& name = target.name;
+        name == "frd" || name == "inp" || name == "vtu" || name == "tg3")
+      target.most = 2048;
     if (target.name == "step") {
       target.does = "reads, up to the hand-over to OpenCASCADE";
       target.run = run_step;
@@ -187,6 +199,7 @@ std::vector<Target> all_targets() {
       target.mutated = mutated_iges;
       target.most = 4096;
     }
+  }
   list.push_back(
       {"check", "reads any format, builds the yarns, finds where they overlap", ".txt", 2048, run_check});
   list.push_back(
@@ -197,6 +210,12 @@ std::vector<Target> all_targets() {
                   "", 256, run_placing});
   list.push_back({"expressions", "writes numbers with units, params and expressions, compares what is read",
                   "", 256, run_expressions});
+  list.push_back(
+      {"use", "reads a text with the files that it uses: texts, a draft, points", "", 2048, run_use});
+  list.push_back({"results", "reads results (frd) with their deck (inp), evaluates their fields", "", 4096,
+                  run_results});
+  list.push_back({"report", "reads a JSON report, resumes from it, makes its page", "", 2048, run_report});
+  list.push_back({"lists", "reads a list of inputs (@FILE)", "", 512, run_lists});
   return list;
 }
 
@@ -205,6 +224,13 @@ std::vector<Target> all_targets() {
 const std::vector<Target>& targets() {
   static const std::vector<Target> list = all_targets();
   return list;
+}
+
+std::string target_lines() {
+  std::string lines;
+  for (const Target& target : targets())
+    lines += fmt::format("{}\t{}\t{}\t{}\n", target.name, target.seeds, target.most, target.does);
+  return lines;
 }
 
 const Target* target_named(std::string_view name) {

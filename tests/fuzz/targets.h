@@ -26,6 +26,9 @@ struct Target {
 // A reader of each format that the program reads, then what comes after readers.
 const std::vector<Target>& targets();
 
+// A line a target: name, extension of its seeds, bytes at most, what it does; between tabs (scripts/fuzz.py).
+std::string target_lines();
+
 // Null: there is none of this name.
 const Target* target_named(std::string_view name);
 

@@ -11,9 +11,21 @@ import subprocess
 import tempfile
 import time
 
-FLAGS = ["--headless=new", "--no-sandbox", "--disable-gpu-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-         "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run", "--disable-extensions",
-         "--disable-background-networking", "--disable-component-update", "--hide-scrollbars", "--remote-debugging-pipe"]
+FLAGS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--no-first-run",
+    "--disable-extensions",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--hide-scrollbars",
+    "--remote-debugging-pipe",
+]
 NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"]
 
 
@@ -37,9 +49,21 @@ class Browser:
             os.dup2(ends[0], 3)
             os.dup2(ends[1], 4)
 
-        self.process = subprocess.Popen([program(), *FLAGS, *flags, f"--user-data-dir={self.profile}", f"--window-size={width},{height}",
-                                         "about:blank"], preexec_fn=place, pass_fds=(3, 4), stdout=subprocess.DEVNULL,
-                                        stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+        self.process = subprocess.Popen(
+            [
+                program(),
+                *FLAGS,
+                *flags,
+                f"--user-data-dir={self.profile}",
+                f"--window-size={width},{height}",
+                "about:blank",
+            ],
+            preexec_fn=place,
+            pass_fds=(3, 4),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            stdin=subprocess.DEVNULL,
+        )
         for end in ends:
             os.close(end)
         self.to, self.source = from_us, from_it
@@ -87,7 +111,9 @@ class Browser:
         method, facts = event.get("method"), event.get("params", {})
         self.events.append(method)
         if method == "Runtime.consoleAPICalled":
-            self.messages.append((facts["type"], " ".join(str(a.get("value", a.get("description"))) for a in facts["args"])))
+            self.messages.append(
+                (facts["type"], " ".join(str(a.get("value", a.get("description"))) for a in facts["args"]))
+            )
         elif method == "Runtime.exceptionThrown":
             details = facts["exceptionDetails"]
             self.messages.append(("exception", details.get("exception", {}).get("description", details["text"])))
@@ -103,7 +129,7 @@ class Browser:
             message["sessionId"] = self.session
         data = json.dumps(message).encode() + b"\0"
         while data:
-            data = data[os.write(self.to, data):]
+            data = data[os.write(self.to, data) :]
         while True:
             answer = self._receive(seconds)
             if answer is None:
@@ -114,7 +140,11 @@ class Browser:
                 return answer["result"]
             self._take(answer)
 
-    def open(self, path, wait="document.readyState === 'complete' && Boolean(window.selvage || document.querySelector('[role=alert]'))"):
+    def open(
+        self,
+        path,
+        wait="document.readyState === 'complete' && Boolean(window.selvage || document.querySelector('[role=alert]'))",
+    ):
         self.messages, self.requests = [], []
         self.call("Page.navigate", url=pathlib.Path(path).resolve().as_uri())
         self.until(wait)
@@ -148,7 +178,15 @@ class Browser:
     def key(self, key, code=None, shift=False):
         text = {"text": key} if len(key) == 1 else {"text": "\r"} if key == "Enter" else {}
         facts = {"key": key, "code": code or key, "modifiers": 8 if shift else 0}
-        virtual = {"Tab": 9, "Enter": 13, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27}.get(key)
+        virtual = {
+            "Tab": 9,
+            "Enter": 13,
+            "ArrowLeft": 37,
+            "ArrowUp": 38,
+            "ArrowRight": 39,
+            "ArrowDown": 40,
+            "Escape": 27,
+        }.get(key)
         if virtual:
             facts["windowsVirtualKeyCode"] = virtual
         self.call("Input.dispatchKeyEvent", type="keyDown", **facts, **text)

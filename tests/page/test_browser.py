@@ -21,11 +21,23 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from browser import NO_WEBGL, Browser
 from program import SAMPLES, Case, environment
 
-CLOTHS = ["weave_denim.txt", "weave_orthogonal.txt", "jersey.txt", "warpknit_tricot.txt", "braid_triaxial.txt", "ply2_plain.txt"]
+CLOTHS = [
+    "weave_denim.txt",
+    "weave_orthogonal.txt",
+    "jersey.txt",
+    "warpknit_tricot.txt",
+    "braid_triaxial.txt",
+    "ply2_plain.txt",
+]
 KEPT = os.environ.get("SELVAGE_SCREENSHOTS")
 CROSS = "fabric 1\nunits mm\nthread rod\n  diameter 0.4\nend\n" + "".join(
     f"yarn {name} rod\n  path chord\n    {a}\n    {b}\n  end\nend\n"
-    for name, a, b in (('"<b onclick=alert(1)>a</b>"', "-2 0 0", "2 0 0"), ("b", "0 -2 0.35", "0 2 0.35"), ("c", "-1 -2 -0.41", "-1 2 -0.41")))
+    for name, a, b in (
+        ('"<b onclick=alert(1)>a</b>"', "-2 0 0", "2 0 0"),
+        ("b", "0 -2 0.35", "0 2 0.35"),
+        ("c", "-1 -2 -0.41", "-1 2 -0.41"),
+    )
+)
 JERSEY = "fabric 1\nthread y\n tex 30\n density 1.52\n packing 0.75\nend\nknit jersey\n thread y\n courses {0}\n wales {0}\nend\n"
 
 
@@ -53,7 +65,9 @@ class Pages(Case):
         """Nothing on the console, and nothing asked for but the page itself."""
         browser = browser or self.browser
         self.assertEqual(browser.messages, [])
-        self.assertEqual([url for url in browser.requests if not url.startswith("data:")], [self.page.resolve().as_uri()])
+        self.assertEqual(
+            [url for url in browser.requests if not url.startswith("data:")], [self.page.resolve().as_uri()]
+        )
 
     def picture(self, name=None, browser=None):
         """The canvas as it is on the screen, height x width x 3."""
@@ -65,9 +79,10 @@ class Pages(Case):
             pathlib.Path(KEPT).mkdir(parents=True, exist_ok=True)
             (pathlib.Path(KEPT) / f"{name}.png").write_bytes(shot)
         left, top, right, bottom = browser.run(
-            "(() => { const b = document.getElementById('stage').getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]; })()")
+            "(() => { const b = document.getElementById('stage').getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]; })()"
+        )
         image = np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
-        return image[round(top):round(bottom), round(left):round(right)]
+        return image[round(top) : round(bottom), round(left) : round(right)]
 
     def drawn(self, image):
         """Where something is: what differs from the ground, but for the labels in the corners."""
@@ -106,8 +121,10 @@ class Pages(Case):
                 self.browser.run("axis.value = 'x'; axis.dispatchEvent(new Event('change'))")
                 left = []
                 for place in (900, 500, 100):
-                    self.browser.run("(() => { const s = document.querySelector('#panel input[type=range]'); "
-                                     f"s.value = {place}; s.dispatchEvent(new Event('input')); }})()")
+                    self.browser.run(
+                        "(() => { const s = document.querySelector('#panel input[type=range]'); "
+                        f"s.value = {place}; s.dispatchEvent(new Event('input')); }})()"
+                    )
                     left.append(self.drawn(self.picture(f"{stem}-section" if place == 500 else None)).sum())
                 self.assertTrue(whole.sum() > left[0] > left[1] > left[2] > 0, left)
                 self.assert_quiet()
@@ -115,7 +132,9 @@ class Pages(Case):
     def test_overlaps_are_listed_and_gone_to(self):
         source = self.source(CROSS)
         self.open(source)
-        rows = self.browser.run("[...document.querySelectorAll('#panel ul.list')].slice(1).map((l) => [...l.children].map((r) => r.textContent))")
+        rows = self.browser.run(
+            "[...document.querySelectorAll('#panel ul.list')].slice(1).map((l) => [...l.children].map((r) => r.textContent))"
+        )
         self.assertEqual(len(rows), 2, rows)
         self.assertEqual(len(rows[0]), 1)
         self.assertIn("<b onclick=alert(1)>a</b>, b", rows[0][0])
@@ -145,11 +164,15 @@ class Pages(Case):
         self.open(self.source(CROSS))
         self.browser.click("[data-view=top]")
         self.browser.until("!selvage.scene.eye.moving")
+
         def at(x, y, z):
-            place = self.browser.run(f"(() => {{ const s = selvage.scene, p = s.eye.target.clone().set({x}, {y}, {z});"
-                                     f" p.x -= selvage.data.centre[0]; p.y -= selvage.data.centre[1]; p.z -= selvage.data.centre[2];"
-                                     " const b = s.canvas.getBoundingClientRect(), q = s.project(p); return [b.left + q.x, b.top + q.y]; })()")
+            place = self.browser.run(
+                f"(() => {{ const s = selvage.scene, p = s.eye.target.clone().set({x}, {y}, {z});"
+                f" p.x -= selvage.data.centre[0]; p.y -= selvage.data.centre[1]; p.z -= selvage.data.centre[2];"
+                " const b = s.canvas.getBoundingClientRect(), q = s.project(p); return [b.left + q.x, b.top + q.y]; })()"
+            )
             return place
+
         x, y = at(-1.5, 0, 0.2)
         self.browser.mouse("mouseMoved", x, y)
         self.browser.until("readout.textContent.includes('onclick')")
@@ -189,36 +212,63 @@ class Pages(Case):
         self.assertAlmostEqual(browser.run("selvage.scene.eye.tilt"), np.pi / 2, delta=1e-6)
         browser.key("m")
         browser.key("Enter")
-        self.assertRegex(browser.run("document.getElementById('status').textContent"), "First point on|nothing at this point")
+        self.assertRegex(
+            browser.run("document.getElementById('status').textContent"), "First point on|nothing at this point"
+        )
         browser.key("Escape")
         # All that can be used is reached by the tabulator, shows that, and has a name.
-        browser.run("document.querySelector('.skip').focus(); window.reached = []; document.addEventListener('focusin', (e) => reached.push(e.target))")
+        browser.run(
+            "document.querySelector('.skip').focus(); window.reached = []; document.addEventListener('focusin', (e) => reached.push(e.target))"
+        )
         for _ in range(60):
             browser.key("Tab")
-        self.assertTrue(browser.run("[...document.querySelectorAll('.tools button, #colors, #axis, ul.list button, #panel input[type=search]')]"
-                                    ".slice(0, 25).every((e) => reached.includes(e))"))
+        self.assertTrue(
+            browser.run(
+                "[...document.querySelectorAll('.tools button, #colors, #axis, ul.list button, #panel input[type=search]')]"
+                ".slice(0, 25).every((e) => reached.includes(e))"
+            )
+        )
         outline = browser.run("getComputedStyle(document.activeElement).outlineStyle")
         self.assertEqual(outline, "solid")
         tree = browser.call("Accessibility.getFullAXTree")["nodes"]
         for node in tree:
-            if node.get("ignored") or node.get("role", {}).get("value") not in ("button", "checkbox", "combobox", "slider", "searchbox", "spinbutton", "application", "list"):
+            if node.get("ignored") or node.get("role", {}).get("value") not in (
+                "button",
+                "checkbox",
+                "combobox",
+                "slider",
+                "searchbox",
+                "spinbutton",
+                "application",
+                "list",
+            ):
                 continue
             self.assertTrue(node.get("name", {}).get("value"), node)
         self.assert_quiet()
 
     def test_light_dark_and_still(self):
         def luminance(color):
-            parts = [int(part) / 255 for part in color[color.index("(") + 1:-1].split(",")[:3]]
-            linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055)**2.4 for c in parts]
+            parts = [int(part) / 255 for part in color[color.index("(") + 1 : -1].split(",")[:3]]
+            linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
             return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
         for scheme in ("light", "dark"):
-            self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme},
-                                                                     {"name": "prefers-reduced-motion", "value": "reduce"}])
+            self.browser.call(
+                "Emulation.setEmulatedMedia",
+                features=[
+                    {"name": "prefers-color-scheme", "value": scheme},
+                    {"name": "prefers-reduced-motion", "value": "reduce"},
+                ],
+            )
             self.open(self.source(CROSS))
-            grounds = self.browser.run("['header', '#panel'].map((s) => getComputedStyle(document.querySelector(s)).backgroundColor)")
+            grounds = self.browser.run(
+                "['header', '#panel'].map((s) => getComputedStyle(document.querySelector(s)).backgroundColor)"
+            )
             self.assertEqual(luminance(grounds[0]) > 0.5, scheme == "light")
             for where in ("h1", "#facts", "h2", ".note", "h3.overlap", "h3.near", ".number", "button"):
-                text, own = self.browser.run(f"(() => {{ const s = getComputedStyle(document.querySelector({where!r})); return [s.color, s.backgroundColor]; }})()")
+                text, own = self.browser.run(
+                    f"(() => {{ const s = getComputedStyle(document.querySelector({where!r})); return [s.color, s.backgroundColor]; }})()"
+                )
                 ground = own if "rgba" not in own else grounds[1]
                 dark, light = sorted((luminance(text), luminance(ground)))
                 self.assertGreaterEqual((light + 0.05) / (dark + 0.05), 4.5, (scheme, where, text, ground))
@@ -230,8 +280,14 @@ class Pages(Case):
         self.browser.call("Emulation.setEmulatedMedia", features=[])
 
     def test_a_narrow_window(self):
-        self.browser.call("Emulation.setDeviceMetricsOverride", width=420, height=800, deviceScaleFactor=1, mobile=False)
-        self.addCleanup(lambda: self.browser.call("Emulation.setDeviceMetricsOverride", width=1200, height=800, deviceScaleFactor=1, mobile=False))
+        self.browser.call(
+            "Emulation.setDeviceMetricsOverride", width=420, height=800, deviceScaleFactor=1, mobile=False
+        )
+        self.addCleanup(
+            lambda: self.browser.call(
+                "Emulation.setDeviceMetricsOverride", width=1200, height=800, deviceScaleFactor=1, mobile=False
+            )
+        )
         self.open(SAMPLES / "jersey.txt")
         self.assertGreater(self.drawn(self.picture("narrow")).sum(), 5000)
         self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 420)
@@ -249,20 +305,39 @@ class Pages(Case):
             self.assertGreater((whole & alone).sum() / alone.sum(), 0.97)
         self.browser.run("selvage.panel.showAll()")
         self.assertEqual(self.browser.run("document.querySelectorAll('svg.bars').length"), 3)
-        self.browser.run("field.value = [...field.options].find((o) => o.textContent === 'min_dihedral').value; field.dispatchEvent(new Event('change'))")
+        self.browser.run(
+            "field.value = [...field.options].find((o) => o.textContent === 'min_dihedral').value; field.dispatchEvent(new Event('change'))"
+        )
         low, high = self.browser.run("selvage.model.uniforms.range.value.toArray()")
         self.assertTrue(0 < low < high < 75)
         self.picture("mesh-field")
         self.assert_quiet()
 
     def test_results(self):
-        self.succeeds("mesh", SAMPLES / "cell_straight.txt", "--matrix", "--periodic", "--voxel", 8, "-o", self.folder / "cell.inp")
-        subprocess.run(["ccx", "-i", "cell"], cwd=self.folder, check=True, capture_output=True, env=environment(OMP_NUM_THREADS="1"))
+        self.succeeds(
+            "mesh",
+            SAMPLES / "cell_straight.txt",
+            "--matrix",
+            "--periodic",
+            "--voxel",
+            8,
+            "-o",
+            self.folder / "cell.inp",
+        )
+        subprocess.run(
+            ["ccx", "-i", "cell"],
+            cwd=self.folder,
+            check=True,
+            capture_output=True,
+            env=environment(OMP_NUM_THREADS="1"),
+        )
         self.open(self.folder / "cell.frd")
         names = self.browser.run("selvage.model.names")
         self.assertEqual(sorted(names), ["Matrix", "tow"])
         before = self.picture("results-regions")
-        self.browser.run("field.value = [...field.options].find((o) => o.textContent === 'STRESS').value; field.dispatchEvent(new Event('change'))")
+        self.browser.run(
+            "field.value = [...field.options].find((o) => o.textContent === 'STRESS').value; field.dispatchEvent(new Event('change'))"
+        )
         first = self.browser.run("selvage.model.uniforms.range.value.toArray()")
         self.browser.run("step.value = '2'; step.dispatchEvent(new Event('change'))")
         self.assertNotEqual(self.browser.run("selvage.model.uniforms.range.value.toArray()"), first)
@@ -299,7 +374,16 @@ class Pages(Case):
 
     def test_a_page_of_a_report(self):
         report, source = self.folder / "r.json", self.source(CROSS)
-        self.fails(1, "check", SAMPLES / "plain4_path.txt", source, SAMPLES / "ring.txt", SAMPLES / "bad/misspelt.txt", "--report", report)
+        self.fails(
+            1,
+            "check",
+            SAMPLES / "plain4_path.txt",
+            source,
+            SAMPLES / "ring.txt",
+            SAMPLES / "bad/misspelt.txt",
+            "--report",
+            report,
+        )
         self.page = self.folder / "r.html"
         self.succeeds("report", "html", report, "-o", self.page)
         browser = self.browser
@@ -309,30 +393,57 @@ class Pages(Case):
             if KEPT:
                 pathlib.Path(KEPT).mkdir(parents=True, exist_ok=True)
                 (pathlib.Path(KEPT) / f"report-{scheme}.png").write_bytes(browser.screenshot())
-            red, = browser.run("[getComputedStyle(document.querySelector('.wide')).backgroundColor.match(/[0-9]+/)[0]]")
+            (red,) = browser.run(
+                "[getComputedStyle(document.querySelector('.wide')).backgroundColor.match(/[0-9]+/)[0]]"
+            )
             self.assertEqual(int(red) > 128, scheme == "light")
         browser.call("Emulation.setEmulatedMedia", features=[])
 
         def names():
-            return browser.run("[...document.querySelectorAll('#inputs > tbody > tr > th')].map((cell) => cell.dataset.value.split('/').pop())")
+            return browser.run(
+                "[...document.querySelectorAll('#inputs > tbody > tr > th')].map((cell) => cell.dataset.value.split('/').pop())"
+            )
 
         def sort(head, *keys):
-            browser.run(f"[...document.querySelectorAll('#inputs thead button')].find((one) => one.textContent === {head!r}).focus()")
+            browser.run(
+                f"[...document.querySelectorAll('#inputs thead button')].find((one) => one.textContent === {head!r}).focus()"
+            )
             for key in keys:
                 browser.key(key)
             browser.settle()
-            return names(), browser.run("[...document.querySelectorAll('[aria-sort]')].map((one) => [one.textContent, one.getAttribute('aria-sort')])")
+            return names(), browser.run(
+                "[...document.querySelectorAll('[aria-sort]')].map((one) => [one.textContent, one.getAttribute('aria-sort')])"
+            )
 
         self.assertEqual(names(), ["misspelt.txt", "cloth.txt", "plain4_path.txt", "ring.txt"])
-        self.assertEqual(sort("Input", "Enter"), (["cloth.txt", "misspelt.txt", "plain4_path.txt", "ring.txt"], [["Input", "ascending"]]))
+        self.assertEqual(
+            sort("Input", "Enter"),
+            (["cloth.txt", "misspelt.txt", "plain4_path.txt", "ring.txt"], [["Input", "ascending"]]),
+        )
         # Without a value at the end, upwards and downwards.
-        self.assertEqual(sort("Yarns", "Enter"), (["ring.txt", "cloth.txt", "plain4_path.txt", "misspelt.txt"], [["Yarns", "ascending"]]))
-        self.assertEqual(sort("Yarns", "Enter"), (["plain4_path.txt", "cloth.txt", "ring.txt", "misspelt.txt"], [["Yarns", "descending"]]))
-        browser.run("document.getElementById('find').value = 'did you mean'; document.getElementById('find').dispatchEvent(new Event('input'))")
-        self.assertEqual(browser.run("[...document.querySelectorAll('#inputs > tbody > tr:not([hidden]) > th')].length"), 1)
+        self.assertEqual(
+            sort("Yarns", "Enter"),
+            (["ring.txt", "cloth.txt", "plain4_path.txt", "misspelt.txt"], [["Yarns", "ascending"]]),
+        )
+        self.assertEqual(
+            sort("Yarns", "Enter"),
+            (["plain4_path.txt", "cloth.txt", "ring.txt", "misspelt.txt"], [["Yarns", "descending"]]),
+        )
+        browser.run(
+            "document.getElementById('find').value = 'did you mean'; document.getElementById('find').dispatchEvent(new Event('input'))"
+        )
+        self.assertEqual(
+            browser.run("[...document.querySelectorAll('#inputs > tbody > tr:not([hidden]) > th')].length"), 1
+        )
         self.assertEqual(browser.run("found.textContent"), "1 of 4")
-        browser.run("document.getElementById('find').value = ''; document.getElementById('find').dispatchEvent(new Event('input'))")
-        self.assertTrue(browser.run("[...document.images].every((image) => image.naturalWidth === 200) && document.images.length === 3"))
+        browser.run(
+            "document.getElementById('find').value = ''; document.getElementById('find').dispatchEvent(new Event('input'))"
+        )
+        self.assertTrue(
+            browser.run(
+                "[...document.images].every((image) => image.naturalWidth === 200) && document.images.length === 3"
+            )
+        )
         self.assert_quiet()
 
 

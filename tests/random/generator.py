@@ -9,11 +9,34 @@ import math
 import random
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "inch": 25.4}
-FAMILIES = {"weave": 20, "stack": 8, "knit": 12, "warpknit": 12, "braid": 14, "bundle": 8, "free": 14, "grid": 8, "piece": 4,
-            "mixed": 4}
+FAMILIES = {
+    "weave": 20,
+    "stack": 8,
+    "knit": 12,
+    "warpknit": 12,
+    "braid": 14,
+    "bundle": 8,
+    "free": 14,
+    "grid": 8,
+    "piece": 4,
+    "mixed": 4,
+}
 CELLED = ("weave", "stack", "knit", "warpknit", "fibre")
-LAPPINGS = ["1-0/1-2", "1-0/2-3", "1-0/3-4", "0-1/2-1", "1-0/0-1", "1-0/1-2/2-3/2-1", "2-3/1-0", "1-2/1-0", "0-1/1-0",
-            "1-0/1-2/1-0/2-3/2-1/2-3", "0-0/2-2", "0-0/3-3", "1-1/0-0"]
+LAPPINGS = [
+    "1-0/1-2",
+    "1-0/2-3",
+    "1-0/3-4",
+    "0-1/2-1",
+    "1-0/0-1",
+    "1-0/1-2/2-3/2-1",
+    "2-3/1-0",
+    "1-2/1-0",
+    "0-1/1-0",
+    "1-0/1-2/1-0/2-3/2-1/2-3",
+    "0-0/2-2",
+    "0-0/3-3",
+    "1-1/0-0",
+]
 KNITTING = 10  # of these make loops
 
 
@@ -100,8 +123,11 @@ class Maker:
         if form == "polygon":
             corners = self.count(3, 8)
             turn = self.random.uniform(0, 2 * math.pi / corners)
-            rows = [f"{self.mm(width / 2 * math.cos(turn + 2 * math.pi * i / corners))} "
-                    f"{self.mm(height / 2 * math.sin(turn + 2 * math.pi * i / corners))}" for i in range(corners)]
+            rows = [
+                f"{self.mm(width / 2 * math.cos(turn + 2 * math.pi * i / corners))} "
+                f"{self.mm(height / 2 * math.sin(turn + 2 * math.pi * i / corners))}"
+                for i in range(corners)
+            ]
             return self.block("section polygon", *rows), False
         return f"section {form} {w} {h}", False
 
@@ -175,14 +201,19 @@ class Maker:
             threads.append(self.thread(threads[0].height * self.between(0.6, 1.5)))
         warp, weft = self.system(threads), self.system(threads)
         thickness = max(t.height for t in warp[0]) + max(t.height for t in weft[0])
-        pitches = [(max(t.width for t in used) + 0.5 * thickness) * self.between(*((0.5, 1.2) if self.careless else (1.05, 2.2)))
-                   for used, _ in (warp, weft)]
+        pitches = [
+            (max(t.width for t in used) + 0.5 * thickness)
+            * self.between(*((0.5, 1.2) if self.careless else (1.05, 2.2)))
+            for used, _ in (warp, weft)
+        ]
         draft, columns, rows = self.draft()
         profile, layers = self.pick("", "", "peirce", "sine", "sine A", "lenticular", "racetrack"), 1
         if profile == "sine A":
             profile = f"sine {self.mm(thickness * self.between(0.15, 0.4))}"
-        lines = [f"{kind} {','.join(t.name for t in used)} {count} pitch {self.mm(pitch)}"
-                 for kind, (used, count), pitch in zip(("warp", "weft"), (warp, weft), pitches)]
+        lines = [
+            f"{kind} {','.join(t.name for t in used)} {count} pitch {self.mm(pitch)}"
+            for kind, (used, count), pitch in zip(("warp", "weft"), (warp, weft), pitches)
+        ]
         lines.append(draft)
         if profile:
             lines.append(f"profile {profile}")
@@ -202,23 +233,38 @@ class Maker:
         warp, weft = (self.thread(self.between(0.2, 0.6), flat=True) for _ in range(2))
         binder = self.thread(min(warp.height, weft.height) * self.between(0.4, 0.8))
         layers = self.count(1, 2)
-        pitches = [warp.width + binder.width * self.between(1.2, 2), (weft.width + binder.height) * self.between(1.2, 2) + weft.height]
+        pitches = [
+            warp.width + binder.width * self.between(1.2, 2),
+            (weft.width + binder.height) * self.between(1.2, 2) + weft.height,
+        ]
         counts = self.count(2, 4), self.count(2, 4)
-        lines = [f"warp {warp.name} {counts[0]} pitch {self.mm(pitches[0])}", f"weft {weft.name} {counts[1]} pitch {self.mm(pitches[1])}",
-                 "profile straight"]
+        lines = [
+            f"warp {warp.name} {counts[0]} pitch {self.mm(pitches[0])}",
+            f"weft {weft.name} {counts[1]} pitch {self.mm(pitches[1])}",
+            "profile straight",
+        ]
         if layers > 1 or self.chance(0.5):
             lines.append(f"layers {layers}")
         top, repeat = layers + 1, 1
         for first in range(1, 1 + self.count(0, 2)):
-            levels = self.pick([top, 0], [0, top], list(range(top + 1)) + list(range(top - 1, 0, -1)), [top, max(0, top - 2)],
-                               [self.count(0, top) for _ in range(self.count(1, 3))])
-            lines.append(f"binder {binder.name} every {self.count(1, 2)} first {first} levels {' '.join(map(str, levels))}")
+            levels = self.pick(
+                [top, 0],
+                [0, top],
+                list(range(top + 1)) + list(range(top - 1, 0, -1)),
+                [top, max(0, top - 2)],
+                [self.count(0, top) for _ in range(self.count(1, 3))],
+            )
+            lines.append(
+                f"binder {binder.name} every {self.count(1, 2)} first {first} levels {' '.join(map(str, levels))}"
+            )
             repeat = math.lcm(repeat, len(levels))
         self.random.shuffle(lines)
         self.add("weave", *lines)
         height = (layers * warp.height + (layers + 1) * weft.height) / 2 + 2.2 * binder.height
         if repeat <= 4:
-            self.box((pitches[1], pitches[0] * 0.9, -height), ((1 + repeat) * pitches[1], 2.9 * pitches[0], height), "xy")
+            self.box(
+                (pitches[1], pitches[0] * 0.9, -height), ((1 + repeat) * pitches[1], 2.9 * pitches[0], height), "xy"
+            )
 
     def knit(self):
         thread = self.thread(self.between(0.1, 0.5), flat=False if self.chance(0.8) else None)
@@ -231,7 +277,9 @@ class Maker:
         if form == "chart":
             width, height = self.count(1, 3), self.count(1, 3)
             signs = "KP" if self.chance(0.4) else "KKKPPTM" if not self.careless else "KPTM"
-            lines.append(self.block("chart", *["".join(self.pick(*signs) for _ in range(width)) for _ in range(height)]))
+            lines.append(
+                self.block("chart", *["".join(self.pick(*signs) for _ in range(width)) for _ in range(height)])
+            )
             repeat = width, height
         self.add("knit" if form == "chart" else f"knit {form}", *lines)
         r = thread.height / 2
@@ -272,14 +320,19 @@ class Maker:
             carriers = self.count(2, 7)
             width = (carriers + 1) * thread.width / math.cos(math.radians(angle)) * self.between(1, 1.8)
             pattern = self.pick("1/1", "1/1", "2/2", "2/1")
-            lines += [f"flat {self.mm(width)}" if self.chance(0.5) else "flat", f"length {self.mm(self.between(1, 3) * width)}"]
+            lines += [
+                f"flat {self.mm(width)}" if self.chance(0.5) else "flat",
+                f"length {self.mm(self.between(1, 3) * width)}",
+            ]
             columns = carriers - 1
         else:
             b = self.pick(a, a, self.count(1, 3))
             carriers = math.lcm(2, a + b) * self.count(1, 2)
             pattern = f"{a}/{b}"
             room = 2 * carriers / 2 * (thread.width + thread.height) / math.cos(math.radians(angle))
-            radius = room / (2 * math.pi) * (self.between(0.5, 1) if self.careless else self.between(0.7, 2)) + thread.height
+            radius = (
+                room / (2 * math.pi) * (self.between(0.5, 1) if self.careless else self.between(0.7, 2)) + thread.height
+            )
             lines += [f"radius {self.mm(radius)}", f"length {self.mm(self.between(0.5, 1.5) * 2 * radius)}"]
             columns = carriers
         lines += [f"carriers {carriers}", f"pattern {pattern}"]
@@ -308,8 +361,14 @@ class Maker:
             rows = max(rows, self.pick(3, 4, 6, 8))
             radius = step * self.between(1, 2) * (1 if rows > 4 else 1.5)
             turn = self.random.uniform(0, 1)
-            points = [(radius * math.cos(2 * math.pi * (i + turn) / rows), radius * math.sin(2 * math.pi * (i + turn) / rows),
-                       number * step + self.random.uniform(-0.1, 0.1) * step) for i in range(rows)]
+            points = [
+                (
+                    radius * math.cos(2 * math.pi * (i + turn) / rows),
+                    radius * math.sin(2 * math.pi * (i + turn) / rows),
+                    number * step + self.random.uniform(-0.1, 0.1) * step,
+                )
+                for i in range(rows)
+            ]
         else:
             points = self.lane(number, step, rows)
         sized = self.chance(0.3)
@@ -318,18 +377,26 @@ class Maker:
         for i, point in enumerate(points):
             line = self.row(*point)
             if sized and (i == 0 or self.chance(0.6)):
-                line += " " + self.row(thread.width * self.random.uniform(0.7, 1.2), thread.height * self.random.uniform(0.7, 1.2))
+                line += " " + self.row(
+                    thread.width * self.random.uniform(0.7, 1.2), thread.height * self.random.uniform(0.7, 1.2)
+                )
                 if turned and self.chance(0.7):
                     line += f" {self.between(-90, 90)}"
             if self.chance(0.05):
                 line += " fixed"
             lines.append(line)
-        head = [f"role {self.pick('warp', 'weft', 'wale', 'course', 'braider', 'axial', 'binder', 'other')}"] if self.chance(0.5) else []
+        head = (
+            [f"role {self.pick('warp', 'weft', 'wale', 'course', 'braider', 'axial', 'binder', 'other')}"]
+            if self.chance(0.5)
+            else []
+        )
         if closed:
             head.append("closed")
         else:
             if self.chance(0.15):
-                head.append(f"tangent {self.pick('start', 'end')} 1 {self.between(-0.5, 0.5)} {self.between(-0.5, 0.5)}")
+                head.append(
+                    f"tangent {self.pick('start', 'end')} 1 {self.between(-0.5, 0.5)} {self.between(-0.5, 0.5)}"
+                )
             if self.chance(0.15):
                 head.append(f"ends {self.pick('patch', 'fan', 'planar', 'patch fan', 'fan planar')}")
         if self.chance(0.1):
@@ -348,7 +415,9 @@ class Maker:
             self.blocks.append(f"edit {name} {self.pick('point', 'point', 'weight')} {joint} to {target}")
         else:
             length = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
-            self.blocks.append(f"edit {name} length {self.mm(length * self.between(1.02, 1.2))} point {joint} along 0 0 1")
+            self.blocks.append(
+                f"edit {name} length {self.mm(length * self.between(1.02, 1.2))} point {joint} along 0 0 1"
+            )
 
     def free(self):
         threads = [self.thread(self.between(0.1, 1)) for _ in range(self.count(1, 2))]
@@ -359,7 +428,11 @@ class Maker:
     def bundle(self):
         """Plies and filaments, and what runs straight through a cell."""
         size = self.between(0.2, 0.8)
-        lines = [f"diameter {self.mm(size)}"] if self.chance(0.8) else [f"section ellipse {self.mm(2 * size)} {self.mm(size)}"]
+        lines = (
+            [f"diameter {self.mm(size)}"]
+            if self.chance(0.8)
+            else [f"section ellipse {self.mm(2 * size)} {self.mm(size)}"]
+        )
         if self.chance(0.7) and lines[0].startswith("diameter"):
             lines.append(f"plies {self.count(2, 4)} {self.between(0, 250 / size)} {self.pick('Z', 'S')}")
         if len(lines) == 1 or self.chance(0.3):
@@ -371,7 +444,10 @@ class Maker:
         self.finest = min(self.finest, size / 5)
         thread = Thread("bundle", size, size, True)
         for number in range(self.count(1, 2)):
-            points = [(4 * size * i, 3 * size * number, self.random.uniform(-0.3, 0.3) * size) for i in range(self.count(2, 4))]
+            points = [
+                (4 * size * i, 3 * size * number, self.random.uniform(-0.3, 0.3) * size)
+                for i in range(self.count(2, 4))
+            ]
             self.add(f"yarn y{number} {thread.name}", self.block("path", *[self.row(*p) for p in points]))
 
     def grid(self):
@@ -436,7 +512,12 @@ class Maker:
 
     def piece(self):
         width, height = self.between(20, 400), self.between(20, 400)
-        corners = [(0, 0), (width, self.between(-5, 5)), (width + self.between(-8, 8), height), (self.between(-8, 8), height)]
+        corners = [
+            (0, 0),
+            (width, self.between(-5, 5)),
+            (width + self.between(-8, 8), height),
+            (self.between(-8, 8), height),
+        ]
         lines = []
         for i, (start, end) in enumerate(zip(corners, corners[1:] + corners[:1])):
             if self.chance(0.5):

@@ -64,7 +64,9 @@ def surface(grid, u, v):
     bu, bv = relaxed.basis(grid.knots_u, grid.degree_u, u), relaxed.basis(grid.knots_v, grid.degree_v, v)
     du, dv = slope_basis(grid.knots_u, grid.degree_u, u), slope_basis(grid.knots_v, grid.degree_v, v)
     lifted = np.concatenate([grid.points * grid.weights[:, :, None], grid.weights[:, :, None]], axis=2)
-    value, su, sv = (np.einsum("va,aik,ui->vuk", a, lifted, b, optimize=True) for a, b in ((bv, bu), (bv, du), (dv, bu)))
+    value, su, sv = (
+        np.einsum("va,aik,ui->vuk", a, lifted, b, optimize=True) for a, b in ((bv, bu), (bv, du), (dv, bu))
+    )
     point = value[:, :, :3] / value[:, :, 3:]
     return point, *((s[:, :, :3] - s[:, :, 3:] * point) / value[:, :, 3:] for s in (su, sv))
 
@@ -106,7 +108,7 @@ def section_area(words, corners):
         return math.pi * w * h / 4, min(w, h)
     if form == "racetrack":
         low, high = min(w, h), max(w, h)
-        return (high - low) * low + math.pi * low ** 2 / 4, low
+        return (high - low) * low + math.pi * low**2 / 4, low
     if form == "power":
         a = np.linspace(0, math.pi / 2, 20001)
         x, y = w / 2 * np.cos(a), h / 2 * np.sin(a) ** numbers[2]
@@ -153,8 +155,11 @@ def deepest_shared(a, b):
     reach = np.linalg.norm(b - middles[:, None], axis=2).max()
     if len(points) == 0:
         return 0.0
-    nearest = ((middles ** 2).sum(axis=1) - 2 * points @ middles.T).argmin(axis=1)  # by the squares of the distances
-    near = np.linalg.norm(points - middles[nearest], axis=1) < reach + np.linalg.norm(np.diff(middles, axis=0), axis=1).max()
+    nearest = ((middles**2).sum(axis=1) - 2 * points @ middles.T).argmin(axis=1)  # by the squares of the distances
+    near = (
+        np.linalg.norm(points - middles[nearest], axis=1)
+        < reach + np.linalg.norm(np.diff(middles, axis=0), axis=1).max()
+    )
     points, nearest = points[near], nearest[near]
     normals = relaxed.area_vectors(b)
     normals /= np.linalg.norm(normals, axis=1)[:, None]

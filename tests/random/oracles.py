@@ -30,8 +30,23 @@ MESHED_SHARE = 3
 CELL_ANGLE = 10.0  # degrees, or a warning
 OCCT_TOTALS = os.environ.get("OCCT_TOTALS")
 
-ORACLES = ["runs", "closed", "volume", "section", "trip", "step", "occt", "overlaps told", "overlaps seen", "relax", "relax measured",
-           "mesh", "order 2", "cell", "other"]
+ORACLES = [
+    "runs",
+    "closed",
+    "volume",
+    "section",
+    "trip",
+    "step",
+    "occt",
+    "overlaps told",
+    "overlaps seen",
+    "relax",
+    "relax measured",
+    "mesh",
+    "order 2",
+    "cell",
+    "other",
+]
 
 
 class Finding:
@@ -96,8 +111,12 @@ class Judge:
         names = {p.stem for p in paths}
         if done.returncode not in codes or not report.exists():
             for name in names:
-                self.finds(name, "runs", f"{tag}: exit code {done.returncode}, report {'there' if report.exists() else 'missing'}",
-                           done.stderr[-2000:])
+                self.finds(
+                    name,
+                    "runs",
+                    f"{tag}: exit code {done.returncode}, report {'there' if report.exists() else 'missing'}",
+                    done.stderr[-2000:],
+                )
             return {}
         try:
             told = json.loads(report.read_text(), parse_constant=lambda word: math.nan)
@@ -134,7 +153,9 @@ class Judge:
 
     def convert(self, paths, formats, out, *options):
         """Entries of those that were converted."""
-        entries = self.call("convert", paths, "--to", formats, "-o", f"{self.folder / out}/", *options, tag=f"convert {out}")
+        entries = self.call(
+            "convert", paths, "--to", formats, "-o", f"{self.folder / out}/", *options, tag=f"convert {out}"
+        )
         return {name: entry for name, entry in entries.items() if entry["ok"]}
 
     def at(self, folder, name, extension):
@@ -166,27 +187,41 @@ class Judge:
     def judge_trips(self):
         names = list(self.built)
         self.grids = {}
-        if not self.wants("trip", "volume", "section", "step", "occt", "overlaps seen", "relax measured", "overlaps told"):
+        if not self.wants(
+            "trip", "volume", "section", "step", "occt", "overlaps seen", "relax measured", "overlaps told"
+        ):
             return
         again = self.convert([self.at("built", n, "igs") for n in names], "iges,txt", "again")
         if self.wants("trip"):
             self.convert([self.at("again", n, "txt") for n in again], "iges", "third")
-        text = self.convert([self.at("built", n, "txt") for n in names], "txt,iges", "text") if self.wants("trip") else {}
+        text = (
+            self.convert([self.at("built", n, "txt") for n in names], "txt,iges", "text") if self.wants("trip") else {}
+        )
+
         def same(name, oracle, kind, a, b, read=pathlib.Path.read_bytes):
             self.expect(name, oracle, a.exists() and b.exists() and read(a) == read(b), kind, f"{a} {b}")
+
         for name in names:
             has_pieces = bool(self.built[name].get("pieces"))
             if not self.built[name].get("yarns") or has_pieces:
                 # Curves are read back as curves, not as pieces of a text.
                 if self.wants("trip") and name in text:
-                    same(name, "trip", "TXT, TXT: another text", self.at("built", name, "txt"), self.at("text", name, "txt"))
+                    same(
+                        name,
+                        "trip",
+                        "TXT, TXT: another text",
+                        self.at("built", name, "txt"),
+                        self.at("text", name, "txt"),
+                    )
                 continue
             iges = self.at("built", name, "igs")
             self.expect(name, "trip", name in again, "IGES is not read back")
             if self.wants("trip"):
                 same(name, "trip", "IGES, IGES: other bytes", iges, self.at("again", name, "igs"))
                 same(name, "trip", "IGES, TXT, IGES: other lines", iges, self.at("third", name, "igs"), undated)
-                same(name, "trip", "TXT, TXT: another text", self.at("built", name, "txt"), self.at("text", name, "txt"))
+                same(
+                    name, "trip", "TXT, TXT: another text", self.at("built", name, "txt"), self.at("text", name, "txt")
+                )
                 same(name, "trip", "TXT, TXT, IGES: other lines", iges, self.at("text", name, "igs"), undated)
             if name in again:
                 self.judge_volumes(name, again[name])
@@ -205,19 +240,26 @@ class Judge:
 
     def judge_volumes(self, name, again):
         yarns = self.built[name]["yarns"]
-        self.expect(name, "trip", [y["name"] for y in yarns] == [y["name"] for y in again["yarns"]], "IGES: other yarns")
+        self.expect(
+            name, "trip", [y["name"] for y in yarns] == [y["name"] for y in again["yarns"]], "IGES: other yarns"
+        )
         self.grids[name] = relaxed.grids_of(self.at("again", name, "txt"))
         if not self.wants("volume", "section") or any(y["name"] not in self.grids[name] for y in yarns):
             return
         mm = measures.UNITS[self.built[name]["units"]]
         areas = self.areas_of(name)
-        for yarn in yarns[::1 + len(yarns) // 5]:
+        for yarn in yarns[:: 1 + len(yarns) // 5]:
             measured = measures.Measured(self.grids[name][yarn["name"]])
-            volume = measured.volume * mm ** 3
+            volume = measured.volume * mm**3
             # A patch over an end that is not flat has a shape of its own.
             bound = 1e-9 if measured.flatness < 1e-9 else 0.05
-            self.expect(name, "volume", abs(volume / yarn["volume"] - 1) < bound, "another volume by quadrature",
-                        f"{yarn['name']}: {volume!r}, reported {yarn['volume']!r}")
+            self.expect(
+                name,
+                "volume",
+                abs(volume / yarn["volume"] - 1) < bound,
+                "another volume by quadrature",
+                f"{yarn['name']}: {volume!r}, reported {yarn['volume']!r}",
+            )
             area = areas(yarn["name"])
             if area is None:
                 continue
@@ -225,8 +267,13 @@ class Judge:
             # the tolerance of it.
             ratio = measured.volume / (area[0] * measured.length)
             bound = 4 * yarn["tube_error"] / mm / area[1] * (math.sqrt(area[0]) / area[1]) + 2e-3
-            self.expect(name, "section", abs(ratio - 1) < bound, "volume is not area times length",
-                        f"{yarn['name']}: {ratio!r} of it, bound {bound:.3g}")
+            self.expect(
+                name,
+                "section",
+                abs(ratio - 1) < bound,
+                "volume is not area times length",
+                f"{yarn['name']}: {ratio!r} of it, bound {bound:.3g}",
+            )
 
     def areas_of(self, name):
         """A function from a yarn's name to (area, thickness) of its section where that is the same all along and known."""
@@ -234,6 +281,7 @@ class Judge:
         threads = {line.split(None, 1)[1]: lines for line, lines in tree.blocks(rows, "thread")}
         by_hand = {line.split(None, 1)[1]: lines for line, lines in tree.blocks(rows, "yarn")}
         thinner = any("thinner" in text for _, text in self.warnings[name])
+
         def area(yarn):
             for head, lines in by_hand.items():
                 for thread, statements in threads.items():
@@ -247,12 +295,15 @@ class Judge:
                 return None
             statements = next(iter(threads.values()))
             return None if any(s.endswith("rotate") for s, _ in statements) else measures.thread_area(statements)
+
         return area
 
     def ask_occt(self, names):
         if not names or not OCCT_TOTALS or not self.wants("occt"):
             return
-        done = subprocess.run([OCCT_TOTALS, *[self.at("built step", n, "stp") for n in names]], capture_output=True, text=True)
+        done = subprocess.run(
+            [OCCT_TOTALS, *[self.at("built step", n, "stp") for n in names]], capture_output=True, text=True
+        )
         lines = done.stdout.splitlines()
         if len(lines) != len(names):
             for name in names:
@@ -260,19 +311,31 @@ class Judge:
             return
         for name, line in zip(names, lines):
             told, yarns = json.loads(line), self.built[name]["yarns"]
-            self.expect(name, "occt", told["ok"] and told["valid"] == told["solids"] == len(yarns), "OpenCASCADE: not all are valid solids",
-                        str({k: told[k] for k in ("ok", "valid", "solids")}) + f" of {len(yarns)}")
+            self.expect(
+                name,
+                "occt",
+                told["ok"] and told["valid"] == told["solids"] == len(yarns),
+                "OpenCASCADE: not all are valid solids",
+                str({k: told[k] for k in ("ok", "valid", "solids")}) + f" of {len(yarns)}",
+            )
             volume = sum(y["volume"] for y in yarns)
             # Its adaptive rule is mostly right to 3e-6, whatever it is asked for, and wrong by up to 7e-4 where the quadrature
             # of "volume" agrees with the program to 1e-15: this asks whether everything is there, once.
-            self.expect(name, "occt", abs(told["volume"] / volume - 1) < 2e-3, "OpenCASCADE: another volume",
-                        f"{told['volume']!r}, reported {volume!r}")
+            self.expect(
+                name,
+                "occt",
+                abs(told["volume"] / volume - 1) < 2e-3,
+                "OpenCASCADE: another volume",
+                f"{told['volume']!r}, reported {volume!r}",
+            )
 
     # ---- overlaps
 
     def judge_overlaps(self):
         self.apart, self.overlapping, self.folded = [], [], {}
-        if not self.wants("closed", "overlaps told", "overlaps seen", "relax", "relax measured", "mesh", "order 2", "cell"):
+        if not self.wants(
+            "closed", "overlaps told", "overlaps seen", "relax", "relax measured", "mesh", "order 2", "cell"
+        ):
             return
         names = [n for n, entry in self.built.items() if size_of(entry) <= CHECKED]
         entries = self.call("check", [self.at("in", n, "txt") for n in names], codes=(0, 1, 3))
@@ -287,12 +350,19 @@ class Judge:
             meets = bool(entry.get("overlaps")) or any(y["self_overlap"] for y in yarns)
             self.folded[name] = {y["name"] for y in yarns if y["self_overlap"]}
             (self.overlapping if meets else self.apart).append(name)
-            self.expect(name, "closed", entry["ok"] or meets, "check: fails and says nothing", str(entry.get("messages"))[:500])
+            self.expect(
+                name, "closed", entry["ok"] or meets, "check: fails and says nothing", str(entry.get("messages"))[:500]
+            )
             if meets and promises_room(self.texts[name]):
                 warned = [text for tag, text in self.warnings[name] if tag == "convert built"]
                 worst = max((o["depth"] for o in entry["overlaps"]), default=math.nan)
-                self.expect(name, "overlaps told", bool(warned), "a construction overlaps and no warning says so",
-                            f"{len(entry['overlaps'])}, deepest {worst}")
+                self.expect(
+                    name,
+                    "overlaps told",
+                    bool(warned),
+                    "a construction overlaps and no warning says so",
+                    f"{len(entry['overlaps'])}, deepest {worst}",
+                )
             elif not meets:
                 self.expect(name, "overlaps told", True, "")
             if not meets and name in self.grids and self.wants("overlaps seen"):
@@ -313,31 +383,57 @@ class Judge:
                 depth = measures.deepest_shared(skins[a], skins[b]) / thickness
                 if depth > worst:
                     worst, pair = depth, (a, b)
-        self.expect(name, oracle, worst < 0.02, "points of a yarn lie in another one", f"{pair}: {worst:.3g} of the thickness")
+        self.expect(
+            name, oracle, worst < 0.02, "points of a yarn lie in another one", f"{pair}: {worst:.3g} of the thickness"
+        )
 
     def judge_relax(self):
         names = [n for n in self.overlapping if len(self.built[n]["yarns"]) <= 30]
         if not self.wants("relax", "relax measured") or not names:
             return
-        entries = self.call("relax", [self.at("in", n, "txt") for n in names], "--to", "txt", "-o", f"{self.folder / 'relaxed'}/", codes=(0, 1, 3))
+        entries = self.call(
+            "relax",
+            [self.at("in", n, "txt") for n in names],
+            "--to",
+            "txt",
+            "-o",
+            f"{self.folder / 'relaxed'}/",
+            codes=(0, 1, 3),
+        )
         solved = []
         for name, entry in entries.items():
             told = entry.get("relax")
             if told is None:
-                self.expect(name, "relax", any(m["severity"] == "error" for m in entry["messages"]), "relax: neither done nor refused")
+                self.expect(
+                    name,
+                    "relax",
+                    any(m["severity"] == "error" for m in entry["messages"]),
+                    "relax: neither done nor refused",
+                )
             elif told["solved"]:
-                self.expect(name, "relax", self.at("relaxed", name, "txt").exists(), "relax: solved and nothing written")
+                self.expect(
+                    name, "relax", self.at("relaxed", name, "txt").exists(), "relax: solved and nothing written"
+                )
                 solved.append(name)
             else:
                 self.expect(name, "relax", bool(told.get("reason")), "relax: no reason", str(told))
-                self.expect(name, "relax", not self.at("relaxed", name, "txt").exists(), "relax: not solved, and written")
+                self.expect(
+                    name, "relax", not self.at("relaxed", name, "txt").exists(), "relax: not solved, and written"
+                )
         solved = [n for n in solved if self.at("relaxed", n, "txt").exists()]
-        checked = self.call("check", [self.at("relaxed", n, "txt") for n in solved], codes=(0, 1, 3), tag="check relaxed")
+        checked = self.call(
+            "check", [self.at("relaxed", n, "txt") for n in solved], codes=(0, 1, 3), tag="check relaxed"
+        )
         for name, entry in checked.items():
             # A yarn that folds over itself from the start does so afterwards.
             folds = {y["name"] for y in entry["yarns"] if y["self_overlap"]} - self.folded[name]
-            self.expect(name, "relax", not entry.get("overlaps") and not folds, "relax: solved, and check finds overlaps",
-                        f"{folds} {entry.get('overlaps')}"[:500])
+            self.expect(
+                name,
+                "relax",
+                not entry.get("overlaps") and not folds,
+                "relax: solved, and check finds overlaps",
+                f"{folds} {entry.get('overlaps')}"[:500],
+            )
             after = relaxed.grids_of(self.at("relaxed", name, "txt"))
             if self.wants("relax measured"):
                 self.look_for_overlaps(name, after, "relax measured")
@@ -351,12 +447,22 @@ class Judge:
         for yarn in before:
             change = relaxed.Change(before[yarn], after[yarn])
             for what, most in (("area", 0.02), ("volume", 0.01), ("length", 0.01)):
-                self.expect(name, "relax measured", getattr(change, what) < most + 2e-3, f"relax: {what} changes",
-                            f"{yarn}: {getattr(change, what):.4f}")
+                self.expect(
+                    name,
+                    "relax measured",
+                    getattr(change, what) < most + 2e-3,
+                    f"relax: {what} changes",
+                    f"{yarn}: {getattr(change, what):.4f}",
+                )
             first, last = before[yarn].sections_at(before[yarn].domain(before[yarn].knots_v, before[yarn].degree_v))
             is_ring = np.abs(first - last).max() < 1e-9 * change.size
-            self.expect(name, "relax measured", is_ring or change.out_of_plane < 1e-6 * change.size, "relax: an end leaves its plane",
-                        f"{yarn}: {change.out_of_plane:.3g}")
+            self.expect(
+                name,
+                "relax measured",
+                is_ring or change.out_of_plane < 1e-6 * change.size,
+                "relax: an end leaves its plane",
+                f"{yarn}: {change.out_of_plane:.3g}",
+            )
 
     # ---- meshes
 
@@ -365,7 +471,10 @@ class Judge:
             # The length in thicknesses, by which the number of tetrahedra grows.
             length = sum(y["length"] / math.sqrt(y["volume"] / y["length"]) for y in self.built[name]["yarns"])
             return length < MESHED or length < 4 * MESHED and self.share(name, MESHED_SHARE)
-        with_cell = [n for n in self.built if re.search(r"^cell ", self.texts[n], re.M) and 0 < size_of(self.built[n]) <= CHECKED]
+
+        with_cell = [
+            n for n in self.built if re.search(r"^cell ", self.texts[n], re.M) and 0 < size_of(self.built[n]) <= CHECKED
+        ]
         dry = [n for n in self.apart if n not in with_cell and is_meshed(n)]
         if self.wants("mesh"):
             self.mesh(dry, "mesh")
@@ -376,7 +485,16 @@ class Judge:
 
     def mesh(self, names, oracle, *options):
         out = oracle.replace(" ", "")
-        entries = self.call("mesh", [self.at("in", n, "txt") for n in names], "--to", "vtu", "-o", f"{self.folder / out}/", *options, tag=oracle)
+        entries = self.call(
+            "mesh",
+            [self.at("in", n, "txt") for n in names],
+            "--to",
+            "vtu",
+            "-o",
+            f"{self.folder / out}/",
+            *options,
+            tag=oracle,
+        )
         for name, entry in entries.items():
             if not entry["ok"]:
                 continue
@@ -384,23 +502,49 @@ class Judge:
             volumes, angles = read_vtu(self.at(out, name, "vtu"))  # in mm, as all meshes
             smallest = min(v.min() for v in volumes.values())
             self.expect(name, oracle, smallest > 0, f"{oracle}: a tetrahedron that is inside out", f"{smallest!r}")
-            self.expect(name, oracle, len(volumes) == len(yarns), f"{oracle}: other yarns", f"{len(volumes)} of {len(yarns)}")
-            self.judge_kept_volumes(name, entry, oracle, [(yarn, own.sum(), yarns[yarn]) for own, yarn in zip(volumes.values(), yarns)])
+            self.expect(
+                name, oracle, len(volumes) == len(yarns), f"{oracle}: other yarns", f"{len(volumes)} of {len(yarns)}"
+            )
+            self.judge_kept_volumes(
+                name, entry, oracle, [(yarn, own.sum(), yarns[yarn]) for own, yarn in zip(volumes.values(), yarns)]
+            )
             told = entry["mesh"]["min_dihedral"]
-            self.expect(name, oracle, abs(told - angles) < 1e-3 * max(1, told), f"{oracle}: another smallest angle", f"{told}, {angles}")
+            self.expect(
+                name,
+                oracle,
+                abs(told - angles) < 1e-3 * max(1, told),
+                f"{oracle}: another smallest angle",
+                f"{told}, {angles}",
+            )
 
     def judge_kept_volumes(self, name, entry, oracle, volumes):
         """Yarns' volumes are kept, or the worst one is told by a warning. volumes: (yarn, of its elements, exact)."""
-        yarn, error = max(((yarn, abs(own / exact - 1)) for yarn, own, exact in volumes), key=lambda pair: pair[1], default=("", 0))
+        yarn, error = max(
+            ((yarn, abs(own / exact - 1)) for yarn, own, exact in volumes), key=lambda pair: pair[1], default=("", 0)
+        )
         told = any(re.search(r"the volume of .* is .* too (small|large)", m["text"]) for m in entry.get("messages", []))
-        self.expect(name, oracle, error < MESH_ERROR or told, f"{oracle}: volume of a yarn, without a warning", f"{yarn}: {error:.4f}")
+        self.expect(
+            name,
+            oracle,
+            error < MESH_ERROR or told,
+            f"{oracle}: volume of a yarn, without a warning",
+            f"{yarn}: {error:.4f}",
+        )
 
     def mesh_cells(self, names):
         for axes in sorted({self.periodic_axes(n) for n in names}):
             some = [n for n in names if self.periodic_axes(n) == axes]
             options = ["--matrix"] + (["--periodic"] if axes else [])
-            entries = self.call("mesh", [self.at("in", n, "txt") for n in some], "--to", "inp", "-o", f"{self.folder / 'cell'}/", *options,
-                                tag="cell")
+            entries = self.call(
+                "mesh",
+                [self.at("in", n, "txt") for n in some],
+                "--to",
+                "inp",
+                "-o",
+                f"{self.folder / 'cell'}/",
+                *options,
+                tag="cell",
+            )
             for name, entry in entries.items():
                 if entry["ok"]:
                     self.judge_cell(name, entry, axes)
@@ -419,19 +563,34 @@ class Judge:
         self.expect(name, "cell", abs(whole - 1) < 1e-6, "cell: is not filled", f"{whole!r}")
         angle = unit_cell.dihedral_angles(deck.points, cells).min()
         told = entry["mesh"]["min_dihedral"]
-        self.expect(name, "cell", abs(told - angle) < 1e-3 * max(1, told), "cell: another smallest angle", f"{told}, {angle}")
+        self.expect(
+            name, "cell", abs(told - angle) < 1e-3 * max(1, told), "cell: another smallest angle", f"{told}, {angle}"
+        )
         warned = [m["text"] for m in entry.get("messages", []) if m["severity"] == "warning"]
-        self.expect(name, "cell", angle >= CELL_ANGLE or warned, "cell: flat tetrahedra without a warning", f"{angle:.3g} degrees")
+        self.expect(
+            name,
+            "cell",
+            angle >= CELL_ANGLE or warned,
+            "cell: flat tetrahedra without a warning",
+            f"{angle:.3g} degrees",
+        )
         # Sets of elements are the regions, in their order.
         regions = entry["mesh"]["regions"]
-        self.expect(name, "cell", len(regions) == len(deck.sets), "cell: other regions", f"{len(regions)}, {list(deck.sets)}")
-        yarns = [(region["name"], unit_cell.volumes(deck.points, cells).sum(), region["exact_volume"])
-                 for region, cells in zip(regions, deck.sets.values()) if region["kind"] == "yarn" and "exact_volume" in region]
+        self.expect(
+            name, "cell", len(regions) == len(deck.sets), "cell: other regions", f"{len(regions)}, {list(deck.sets)}"
+        )
+        yarns = [
+            (region["name"], unit_cell.volumes(deck.points, cells).sum(), region["exact_volume"])
+            for region, cells in zip(regions, deck.sets.values())
+            if region["kind"] == "yarn" and "exact_volume" in region
+        ]
         self.judge_kept_volumes(name, entry, "cell", yarns)
         points = deck.points[deck.used()]
         for axis in axes.split():
             miss = unit_cell.opposite_miss(points, low, high, "xyz".index(axis))
-            self.expect(name, "cell", miss < 1e-9 * (high - low).max(), "cell: opposite faces differ", f"{axis}: {miss}")
+            self.expect(
+                name, "cell", miss < 1e-9 * (high - low).max(), "cell: opposite faces differ", f"{axis}: {miss}"
+            )
 
     # ---- what only has to run
 
@@ -443,20 +602,34 @@ class Judge:
         for command, more in (("info", []), ("view", ["--size", "120x90", "-o", f"{self.folder / 'view'}/"])):
             for name, entry in self.call(command, paths, *more, tag=command).items():
                 # A picture is of yarns: where there are garment pieces alone, it is refused, with the way to draw them.
-                taken = entry["ok"] or (command == "view" and not self.built[name].get("yarns")
-                                        and any("no yarn to show; garment pieces" in m["text"] for m in entry["messages"]))
-                self.expect(name, "other", taken, f"{command} refuses what convert takes", str(entry.get("messages"))[:500])
+                taken = entry["ok"] or (
+                    command == "view"
+                    and not self.built[name].get("yarns")
+                    and any("no yarn to show; garment pieces" in m["text"] for m in entry["messages"])
+                )
+                self.expect(
+                    name, "other", taken, f"{command} refuses what convert takes", str(entry.get("messages"))[:500]
+                )
         # Same input, same bytes, without its neighbours.
         one = names[0]
         self.convert([self.at("in", one, "txt")], "iges,txt", "alone")
         for extension in ("igs", "txt"):
             a, b = self.at("built", one, extension), self.at("alone", one, extension)
-            self.expect(one, "other", b.exists() and a.read_bytes() == b.read_bytes(), f"other bytes the second time: {extension}")
+            self.expect(
+                one,
+                "other",
+                b.exists() and a.read_bytes() == b.read_bytes(),
+                f"other bytes the second time: {extension}",
+            )
 
 
 def has_place(message):
     where, text = message.get("where", ""), message["text"]
-    return bool(re.search(r":\d+(:\d+)?$", where)) or bool(re.search(r'yarn|thread|[a-z]+\d*_\d+|"[^"]+"', text)) or bool(where)
+    return (
+        bool(re.search(r":\d+(:\d+)?$", where))
+        or bool(re.search(r'yarn|thread|[a-z]+\d*_\d+|"[^"]+"', text))
+        or bool(where)
+    )
 
 
 def not_finite(value, path=""):
@@ -469,8 +642,11 @@ def not_finite(value, path=""):
 def promises_room(text):
     """Whether all yarns come from constructions that keep them apart, or warn."""
     keywords = set(re.findall(r"^(\w+)", text, re.M))
-    return (bool(keywords & {"weave", "knit", "warpknit", "braid"}) and not keywords & {"yarn", "edit"}
-            and not re.search(r"^\s+profile sine \S", text, re.M))
+    return (
+        bool(keywords & {"weave", "knit", "warpknit", "braid"})
+        and not keywords & {"yarn", "edit"}
+        and not re.search(r"^\s+profile sine \S", text, re.M)
+    )
 
 
 def size_of(entry):
@@ -480,8 +656,12 @@ def size_of(entry):
 
 def same_grids(some, others):
     return list(some) == list(others) and all(
-        np.array_equal(a.points, b.points) and np.array_equal(a.weights, b.weights) and list(a.knots_u) == list(b.knots_u)
-        and list(a.knots_v) == list(b.knots_v) for a, b in zip(some.values(), others.values()))
+        np.array_equal(a.points, b.points)
+        and np.array_equal(a.weights, b.weights)
+        and list(a.knots_u) == list(b.knots_u)
+        and list(a.knots_v) == list(b.knots_v)
+        for a, b in zip(some.values(), others.values())
+    )
 
 
 def undated(path):

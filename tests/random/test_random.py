@@ -35,8 +35,11 @@ end
 
 def cylinder():
     """A grid that is nearly a tube of radius 1 about x from 0 to 5."""
-    rows = [(x, math.cos(a) / math.cos(math.pi / 16), math.sin(a) / math.cos(math.pi / 16)) for x in (0, 1, 2, 3, 5)
-            for a in (2 * math.pi * i / 16 for i in range(16))]
+    rows = [
+        (x, math.cos(a) / math.cos(math.pi / 16), math.sin(a) / math.cos(math.pi / 16))
+        for x in (0, 1, 2, 3, 5)
+        for a in (2 * math.pi * i / 16 for i in range(16))
+    ]
     text = "yarn tube\n  grid 5 16\n" + "".join(f"    {x!r} {y!r} {z!r}\n" for x, y, z in rows) + "  end\nend\n"
     return relaxed.Yarn(text)
 
@@ -50,7 +53,7 @@ class Measures(unittest.TestCase):
         # The area of a closed quadratic B-spline over a regular polygon, exactly: between the polygon's corners and sides
         # each span is a parabola over the triangle of two middles of sides and a corner, two thirds of it.
         outer = 1 / math.cos(math.pi / 16)
-        polygon = 8 * outer ** 2 * math.sin(math.pi / 8)
+        polygon = 8 * outer**2 * math.sin(math.pi / 8)
         inner = 8 * math.sin(math.pi / 8)  # through the middles of the sides, at distance 1
         self.assertAlmostEqual(measured.volume / 5, inner + 2 / 3 * (polygon - inner), places=9)
 
@@ -64,7 +67,7 @@ class Measures(unittest.TestCase):
         """Weights that go on round and along: the rule converges to what one with twice the points gives."""
         grid = cylinder()
         grid.weights = grid.weights * (1 + 0.8 * np.sin(np.arange(grid.weights.size)).reshape(grid.weights.shape))
-        grid.weights[:, -grid.degree_u:] = grid.weights[:, :grid.degree_u]
+        grid.weights[:, -grid.degree_u :] = grid.weights[:, : grid.degree_u]
         volume, rule = measures.Measured(grid).volume, measures.GAUSS_RATIONAL
         measures.GAUSS_RATIONAL = np.polynomial.legendre.leggauss(24)
         try:
@@ -86,11 +89,15 @@ class Shrinking(unittest.TestCase):
             self.assertEqual(tree.render(tree.parse(text)).split(), text.split())
 
     def test_the_failure_stays(self):
-        text = "fabric 1\nthread t\n  diameter 0.5\nend\nyarn a t\n  path\n" + "".join(
-            f"    {i}.25 {i * i} 0\n" for i in range(9)) + "    77.123 5 2\n  end\nend\nyarn b t\n  path\n    0 0 0\n    1 1 1\n  end\nend\n"
+        text = (
+            "fabric 1\nthread t\n  diameter 0.5\nend\nyarn a t\n  path\n"
+            + "".join(f"    {i}.25 {i * i} 0\n" for i in range(9))
+            + "    77.123 5 2\n  end\nend\nyarn b t\n  path\n    0 0 0\n    1 1 1\n  end\nend\n"
+        )
 
         def fails(texts):
             return ["77" in t and "path" in t for t in texts]
+
         small = tree.shrunk(text, fails, effort=1000)
         self.assertEqual(small, "fabric 1\nyarn a t\n  path\n    77 0 0\n  end\nend\n")
 
@@ -106,9 +113,13 @@ class Oracles(unittest.TestCase):
             return oracles.Judge(pathlib.Path(folder), texts).judge()
 
     def test_overlapping_yarns_are_moved_apart_and_a_bad_text_is_refused(self):
-        judge = self.judged(crossing=CROSSING, bad="fabric 1\nyarn a nowhere\n  path\n    0 0 0\n    1 0 0\n  end\nend\n")
+        judge = self.judged(
+            crossing=CROSSING, bad="fabric 1\nyarn a nowhere\n  path\n    0 0 0\n    1 0 0\n  end\nend\n"
+        )
         self.assertEqual([f.key for found in judge.findings.values() for f in found], [])
-        self.assertLessEqual({"runs", "closed", "volume", "section", "trip", "relax", "relax measured"}, judge.asked["crossing"])
+        self.assertLessEqual(
+            {"runs", "closed", "volume", "section", "trip", "relax", "relax measured"}, judge.asked["crossing"]
+        )
         self.assertEqual(len(judge.refusals["bad"]), 1)
 
     def test_what_is_wrong_is_found(self):
@@ -116,18 +127,30 @@ class Oracles(unittest.TestCase):
         judge = oracles.Judge("nowhere", {"a": CROSSING})
         judge.look_at("check", "a", {"ok": False, "messages": []})
         judge.look_at("convert", "a", {"ok": False, "messages": []})
-        judge.look_at("mesh", "a", {"ok": False, "messages": [{"severity": "error", "text": "crashed: Segmentation fault"}]})
+        judge.look_at(
+            "mesh", "a", {"ok": False, "messages": [{"severity": "error", "text": "crashed: Segmentation fault"}]}
+        )
         judge.look_at("info", "a", {"ok": True, "volume": math.nan})
         skin = cylinder()
         moved = cylinder()
         moved.points = moved.points + np.array([0, 1.0, 0])
         judge.look_for_overlaps("a", {"one": skin, "other": moved}, "overlaps seen")
-        told = {"severity": "warning", "text": "the volume of yarn 'y' is 1 % too large; a smaller --size makes it better"}
+        told = {
+            "severity": "warning",
+            "text": "the volume of yarn 'y' is 1 % too large; a smaller --size makes it better",
+        }
         for messages in ([], [told]):
             judge.judge_kept_volumes("a", {"messages": messages}, "mesh", [("x", 1.0, 1.001), ("y", 1.01, 1.0)])
-        self.assertEqual([f.kind for f in judge.findings["a"]],
-                         ["convert: failed without a message", "mesh: crashed: Segmentation fault", "info: no number in the report: .volume",
-                          "points of a yarn lie in another one", "mesh: volume of a yarn, without a warning"])
+        self.assertEqual(
+            [f.kind for f in judge.findings["a"]],
+            [
+                "convert: failed without a message",
+                "mesh: crashed: Segmentation fault",
+                "info: no number in the report: .volume",
+                "points of a yarn lie in another one",
+                "mesh: volume of a yarn, without a warning",
+            ],
+        )
 
 
 if __name__ == "__main__":

@@ -56,14 +56,19 @@ def places(tree, path=()):
 
 
 def without(tree, gone, path=()):
-    return [[line, without(rows, gone, (*path, i)) if rows is not None else None] for i, (line, rows) in enumerate(tree)
-            if (*path, i) not in gone]
+    return [
+        [line, without(rows, gone, (*path, i)) if rows is not None else None]
+        for i, (line, rows) in enumerate(tree)
+        if (*path, i) not in gone
+    ]
 
 
 def replaced(tree, place, line):
     if len(place) == 1:
         return [[line, rows] if i == place[0] else [old, rows] for i, (old, rows) in enumerate(tree)]
-    return [[old, replaced(rows, place[1:], line)] if i == place[0] else [old, rows] for i, (old, rows) in enumerate(tree)]
+    return [
+        [old, replaced(rows, place[1:], line)] if i == place[0] else [old, rows] for i, (old, rows) in enumerate(tree)
+    ]
 
 
 def line_at(tree, place):
@@ -84,7 +89,7 @@ def removals(tree):
             size = (size + 1) // 2
             for k in range(0, len(siblings), size):
                 if size > 1 or len(siblings) == 1:
-                    yield set(siblings[k:k + size])
+                    yield set(siblings[k : k + size])
     for place in every:
         yield {place}
 
@@ -101,11 +106,14 @@ def simpler_numbers(word):
 
 def simplifications(tree):
     """Trees with simpler numbers: all at once, then one after the other."""
+
     def rounded(digits):
         return lambda m: f"{float(m[0]):.{digits}g}" if "." in m[0] or "e" in m[0] else m[0]
 
     def everywhere(rows, change):
-        return [[NUMBER.sub(change, line), everywhere(inner, change) if inner is not None else None] for line, inner in rows]
+        return [
+            [NUMBER.sub(change, line), everywhere(inner, change) if inner is not None else None] for line, inner in rows
+        ]
 
     for digits in (1, 2, 3, 4):
         yield everywhere(tree, rounded(digits))
@@ -115,7 +123,7 @@ def simplifications(tree):
             continue
         for match in NUMBER.finditer(line):
             for word in simpler_numbers(match[0]):
-                yield replaced(tree, place, line[:match.start()] + word + line[match.end():])
+                yield replaced(tree, place, line[: match.start()] + word + line[match.end() :])
 
 
 def shrunk(text, still_fails, effort=40, width=12):

@@ -43,8 +43,13 @@ class Used:
     """What a run took: seconds of processor time, and bytes of its largest process."""
 
     def __init__(self, *arguments):
-        process = subprocess.Popen([PROGRAM, *map(str, arguments)], env=environment(), stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        process = subprocess.Popen(
+            [PROGRAM, *map(str, arguments)],
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+        )
         self.messages = process.stderr.read().decode(errors="replace")
         process.stderr.close()
         _, status, usage = os.wait4(process.pid, 0)
@@ -85,8 +90,9 @@ class Scale(Case):
             surfaces = 0
             for part in parts:
                 # The first of two lines in the directory of each of a yarn's surfaces: body and two ends.
-                lines = subprocess.run(["grep", "-c", "^     128 .*D[0-9 ]*[13579]$", part],
-                                       capture_output=True, text=True, check=True)
+                lines = subprocess.run(
+                    ["grep", "-c", "^     128 .*D[0-9 ]*[13579]$", part], capture_output=True, text=True, check=True
+                )
                 surfaces += int(lines.stdout)
                 part.unlink()
             self.assertEqual(surfaces, 3 * side, f"{len(parts)} files")

@@ -10,8 +10,18 @@ from program import Case, SAMPLES, run
 
 OCCT_TRIP = os.environ["OCCT_TRIP"]
 # Coordinates below 100 mm, where ten digits of OpenCASCADE's IGES resolve 1e-7 mm.
-NAMES = ("plain4_grid", "plain4_path", "ring", "sections", "weave_racetrack", "jersey", "braid", "ply2_plain",
-         "warpknit_tricot", "weave_satin5")
+NAMES = (
+    "plain4_grid",
+    "plain4_path",
+    "ring",
+    "sections",
+    "weave_racetrack",
+    "jersey",
+    "braid",
+    "ply2_plain",
+    "warpknit_tricot",
+    "weave_satin5",
+)
 
 
 class Trips(Case):
@@ -58,8 +68,8 @@ class Trips(Case):
         rows = [m for m in re.finditer(r"^(    )(-?[\d.]+) (-?[\d.]+) (-?[\d.]+)$", text, re.MULTILINE)]
         row = rows[len(rows) // 2 + 40]
         changed = self.folder / "changed.txt"
-        changed.write_text(text[:row.start(4)] + repr(float(row[4]) + 1e-5) + text[row.end(4):])
-        yarn = re.findall(r"^yarn (\S+)", text[:row.start()], re.MULTILINE)[-1]
+        changed.write_text(text[: row.start(4)] + repr(float(row[4]) + 1e-5) + text[row.end(4) :])
+        yarn = re.findall(r"^yarn (\S+)", text[: row.start()], re.MULTILINE)[-1]
         before, after = self.folder / "before.stp", self.folder / "after.stp"
         self.succeeds("convert", SAMPLES / "plain4_grid.txt", "-o", before, "--quiet")
         self.succeeds("convert", changed, "-o", after, "--quiet")

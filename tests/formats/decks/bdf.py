@@ -21,8 +21,8 @@ def cards_of(lines):
         name = line[:8].strip()
         wide = name.endswith("*")
         width, count = (16, 4) if wide else (8, 8)
-        assert line[8 + width * count:].strip() in ("", "+"), line
-        fields = [line[8 + k * width:8 + (k + 1) * width].strip() for k in range(count)]
+        assert line[8 + width * count :].strip() in ("", "+"), line
+        fields = [line[8 + k * width : 8 + (k + 1) * width].strip() for k in range(count)]
         if name in ("", "*", "+"):
             cards[-1][1].extend(fields)
         else:
@@ -62,7 +62,7 @@ def read(path):
             subcases[-1][words[0]] = int(words[1])
     materials, properties, systems, prop_of = {}, {}, {}, {}
     spcs, temperatures = {}, {}
-    for name, fields in cards_of(lines[bulk + 1:]):
+    for name, fields in cards_of(lines[bulk + 1 :]):
         if name == "GRID":
             model.nodes[int(fields[0])] = tuple(map(real, fields[2:5]))
         elif name in ("CTETRA", "CHEXA"):
@@ -71,7 +71,7 @@ def read(path):
         elif name == "PSOLID":
             properties[int(fields[0])] = (int(fields[1]), int(fields[2]))
         elif name == "CORD2R":
-            origin, on_z, in_xz = (np.array(list(map(real, fields[k:k + 3]))) for k in (2, 5, 8))
+            origin, on_z, in_xz = (np.array(list(map(real, fields[k : k + 3]))) for k in (2, 5, 8))
             z = (on_z - origin) / np.linalg.norm(on_z - origin)
             y = np.cross(z, in_xz - origin)
             y /= np.linalg.norm(y)
@@ -79,15 +79,20 @@ def read(path):
         elif name == "MAT1":
             fields += [""] * 8
             expansion = (real(fields[5]),) * 3 if fields[5] else None
-            materials[int(fields[0])] = isotropic(real(fields[1]), real(fields[3]),
-                                                  real(fields[4]) if fields[4] else None, expansion)
+            materials[int(fields[0])] = isotropic(
+                real(fields[1]), real(fields[3]), real(fields[4]) if fields[4] else None, expansion
+            )
         elif name == "MAT9":
             g = np.zeros((6, 6))
             g[np.triu_indices(6)] = list(map(real, fields[1:22]))
             g = g + g.T - np.diag(np.diag(g))
             order = [0, 1, 2, 3, 5, 4]  # from xx yy zz xy yz zx
             expansion = tuple(map(real, fields[23:26]))
-            materials[int(fields[0])] = (np.linalg.inv(g)[np.ix_(order, order)], real(fields[22]) if fields[22] else None, expansion)
+            materials[int(fields[0])] = (
+                np.linalg.inv(g)[np.ix_(order, order)],
+                real(fields[22]) if fields[22] else None,
+                expansion,
+            )
         elif name == "MPC":
             terms, at = [], 1
             while at < len(fields):

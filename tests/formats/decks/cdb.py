@@ -9,7 +9,7 @@ from model import Model, constants, in_space, isotropic
 
 def fields_of(line, width, count):
     line = line.rstrip("\n")
-    return [line[i * width:(i + 1) * width] for i in range(count) if line[i * width:(i + 1) * width].strip()]
+    return [line[i * width : (i + 1) * width] for i in range(count) if line[i * width : (i + 1) * width].strip()]
 
 
 def axes_of(xy, yz, zx):
@@ -38,7 +38,7 @@ def read(path):
                 row = lines[at]
                 number = int(row[:width])
                 start = integers * width
-                model.nodes[number] = tuple(float(row[start + k * real:start + (k + 1) * real]) for k in range(3))
+                model.nodes[number] = tuple(float(row[start + k * real : start + (k + 1) * real]) for k in range(3))
                 at += 1
             assert len(model.nodes) == int(words[4]) and max(model.nodes) == int(words[3])
         elif command == "EBLOCK":
@@ -81,10 +81,25 @@ def read(path):
     model.equations = [equations[number] for number in sorted(equations)]
     known = {}
     for number, m in materials.items():
-        expansion = in_space(tuple(m[name] for name in ("ALPX", "ALPY", "ALPZ") if name in m), "EY" not in m) if "ALPX" in m else None
+        expansion = (
+            in_space(tuple(m[name] for name in ("ALPX", "ALPY", "ALPZ") if name in m), "EY" not in m)
+            if "ALPX" in m
+            else None
+        )
         if "EY" in m:
-            known[number] = constants(m["EX"], m["EY"], m["EZ"], m["PRXY"], m["PRXZ"], m["PRYZ"], m["GXY"], m["GXZ"], m["GYZ"],
-                                      m.get("DENS"), expansion)
+            known[number] = constants(
+                m["EX"],
+                m["EY"],
+                m["EZ"],
+                m["PRXY"],
+                m["PRXZ"],
+                m["PRYZ"],
+                m["GXY"],
+                m["GXZ"],
+                m["GYZ"],
+                m.get("DENS"),
+                expansion,
+            )
         else:
             known[number] = isotropic(m["EX"], m["PRXY"], m.get("DENS"), expansion)
     for element, (material, system) in of_element.items():

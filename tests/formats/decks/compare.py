@@ -16,7 +16,9 @@ tolerance = 10.0 ** -float(sys.argv[3])
 reader = importlib.import_module(os.path.splitext(path)[1][1:])
 other = reader.read(path)
 for model, file in ((reference, sys.argv[1]), (other, path)):
-    model.node_sets, model.element_sets = by_yarns(model.node_sets, yarns_of(file)), by_yarns(model.element_sets, yarns_of(file))
+    model.node_sets, model.element_sets = by_yarns(model.node_sets, yarns_of(file)), by_yarns(
+        model.element_sets, yarns_of(file)
+    )
 faults = []
 
 
@@ -54,15 +56,29 @@ if not faults:
         near(f"expansion of {element}", expansion or (0, 0, 0), expansion2 or (0, 0, 0), max(expansion or (1,)))
     same("elements with axes", sorted(reference.axes), sorted(other.axes))
     if not faults and reference.axes:
-        print("axes differ by", near("axes", [reference.axes[e] for e in sorted(reference.axes)],
-                                     [other.axes[e] for e in sorted(other.axes)], 1))
-    same("node sets", {k: v for k, v in reference.node_sets.items() if k not in ("ALLNODES", "DRIVERS") and k in other.node_sets},
-         other.node_sets)
+        print(
+            "axes differ by",
+            near(
+                "axes",
+                [reference.axes[e] for e in sorted(reference.axes)],
+                [other.axes[e] for e in sorted(other.axes)],
+                1,
+            ),
+        )
+    same(
+        "node sets",
+        {k: v for k, v in reference.node_sets.items() if k not in ("ALLNODES", "DRIVERS") and k in other.node_sets},
+        other.node_sets,
+    )
     cell_sets = {k for k in reference.node_sets if k.startswith(("FACE", "EDGE", "CORNER"))}
     same("sets of the cell", sorted(cell_sets - set(other.node_sets)), [])
     wanted = {k: v for k, v in reference.element_sets.items() if k in other.element_sets}
     same("element sets", wanted, other.element_sets)
-    same("element sets that are missing", [k for k in reference.element_sets if k not in wanted and "_SECTION" not in k and k != "ALL"], [])
+    same(
+        "element sets that are missing",
+        [k for k in reference.element_sets if k not in wanted and "_SECTION" not in k and k != "ALL"],
+        [],
+    )
     same("number of equations", len(reference.equations), len(other.equations))
     for a, b in zip(reference.equations, other.equations):
         same("equation", [term[:2] for term in a], [term[:2] for term in b])

@@ -14,8 +14,9 @@ def blocks_of(path):
             continue
         if line.startswith("*"):
             words = [word.strip() for word in line[1:].split(",")]
-            parameters = dict((part.strip().upper(), value.strip()) for part, _, value in
-                              (word.partition("=") for word in words[1:]))
+            parameters = dict(
+                (part.strip().upper(), value.strip()) for part, _, value in (word.partition("=") for word in words[1:])
+            )
             blocks.append((words[0].upper(), parameters, []))
         else:
             blocks[-1][2].append([field.strip() for field in line.split(",")])
@@ -75,11 +76,14 @@ def read(path):
                 while len(fields) < 3 * count:
                     fields += [field for field in rows[at] if field]
                     at += 1
-                model.equations.append([(int(fields[i]), int(fields[i + 1]), float(fields[i + 2]))
-                                        for i in range(0, 3 * count, 3)])
+                model.equations.append(
+                    [(int(fields[i]), int(fields[i + 1]), float(fields[i + 2])) for i in range(0, 3 * count, 3)]
+                )
         elif keyword == "STEP":
             step = ({}, [0.0])
-            driver = {name: members[0] for name, members in model.node_sets.items() if "DRIVER" in name and len(members) == 1}
+            driver = {
+                name: members[0] for name, members in model.node_sets.items() if "DRIVER" in name and len(members) == 1
+            }
         elif keyword == "BOUNDARY" and step:
             for row in rows:
                 if row[0].upper() in driver and row[1] == "1":
@@ -100,8 +104,9 @@ def read(path):
         if "ORIENTATION" not in section or is_isotropic(known[section["MATERIAL"].upper()]):
             continue
         rows = distributions[orientations[section["ORIENTATION"].upper()]]
-        axes = {int(row[0]): right_handed(list(map(float, row[1:4])), list(map(float, row[4:7])))
-                for row in rows if row[0]}
+        axes = {
+            int(row[0]): right_handed(list(map(float, row[1:4])), list(map(float, row[4:7]))) for row in rows if row[0]
+        }
         for element in model.element_sets[section["ELSET"].upper()]:
             model.axes[element] = axes[element]
     return model

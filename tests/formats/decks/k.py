@@ -9,7 +9,7 @@ IN_CASES = ("*BOUNDARY_SPC_NODE", "*BOUNDARY_PRESCRIBED_MOTION_NODE", "*DEFINE_C
 def columns(line, *widths):
     fields, at = [], 0
     for width in widths:
-        fields.append(line[at:at + width].strip())
+        fields.append(line[at : at + width].strip())
         at += width
     assert not line[at:].strip(), line
     return fields
@@ -28,7 +28,11 @@ def read(path):
             blocks[-1][1].append(line)
     materials, parts, expansions, part_of = {}, {}, {}, {}
     part_sets = {}
-    cases, open_case, curves = {}, None, {}  # cases: of each number its drivers' values and the end of its curve of temperature
+    cases, open_case, curves = (
+        {},
+        None,
+        {},
+    )  # cases: of each number its drivers' values and the end of its curve of temperature
     for keyword, rows in blocks:
         assert open_case is None or keyword in IN_CASES or keyword == f"*CASE_END_{open_case}", keyword
         if keyword == "*NODE":
@@ -46,8 +50,19 @@ def read(path):
             ab, bc, ca_shear, choice = map(float, columns(rows[2], *[10] * 4))
             assert choice == 2
             ea, eb, ec, ba, ca, cb = map(float, (ea, eb, ec, ba, ca, cb))
-            materials[int(number)] = ("orthotropic", float(density), ea, eb, ec, ba * ea / eb, ca * ea / ec, cb * eb / ec, ab,
-                                      ca_shear, bc)
+            materials[int(number)] = (
+                "orthotropic",
+                float(density),
+                ea,
+                eb,
+                ec,
+                ba * ea / eb,
+                ca * ea / ec,
+                cb * eb / ec,
+                ab,
+                ca_shear,
+                bc,
+            )
         elif keyword == "*MAT_ADD_THERMAL_EXPANSION":
             fields = columns(rows[0], *[10] * 7)
             expansions[int(fields[0])] = tuple(float(fields[k]) for k in (2, 4, 6) if fields[k].strip())
@@ -75,7 +90,10 @@ def read(path):
             (part_sets if "PART" in keyword else model.node_sets)[rows[0].strip().upper()] = sorted(members)
         elif keyword == "*CASE":
             number, name = columns(rows[0], 10, 10)
-            assert name == f"case{number}" and rows[1:] == ["", f"{number:>10}"]  # no commands of its own; the one identifier
+            assert name == f"case{number}" and rows[1:] == [
+                "",
+                f"{number:>10}",
+            ]  # no commands of its own; the one identifier
             cases[int(number)] = ({}, 0.0)
         elif keyword.startswith("*CASE_BEGIN_"):
             open_case = int(keyword.rpartition("_")[2])
@@ -102,8 +120,12 @@ def read(path):
             at = 1
             while at < len(rows):
                 count = int(rows[at])
-                model.equations.append([(int(n), int(d), float(f)) for n, d, f in
-                                        (columns(row, 10, 10, 10) for row in rows[at + 1:at + 1 + count])])
+                model.equations.append(
+                    [
+                        (int(n), int(d), float(f))
+                        for n, d, f in (columns(row, 10, 10, 10) for row in rows[at + 1 : at + 1 + count])
+                    ]
+                )
                 at += 1 + count
     for name, members in part_sets.items():
         model.element_sets[name] = sorted(e for e, part in part_of.items() if part in members)

@@ -29,7 +29,7 @@ def yarns_of(path):
     mark = MARKS[path.rpartition(".")[2]]
     yarns, name = {}, None
     for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines():
-        comment = line[len(mark):].strip() if line.startswith(mark) else ""
+        comment = line[len(mark) :].strip() if line.startswith(mark) else ""
         begun = re.fullmatch(r"(.*) is yarn(?: '(.*)')?", comment)
         if begun:
             name, yarns[begun[1]] = begun[1], begun[2] or ""
@@ -48,7 +48,7 @@ def by_yarns(sets, yarns):
     for name, members in sets.items():
         for deck_name in sorted(yarns, key=len, reverse=True):
             if name.upper() == deck_name.upper() or name.upper().startswith(deck_name.upper() + "_"):
-                name = yarns[deck_name] + name[len(deck_name):]
+                name = yarns[deck_name] + name[len(deck_name) :]
                 break
         named[name.upper()] = members
     return named

@@ -83,8 +83,11 @@ def integer_of(value, default=0):
 def real_of(value, default=0.0):
     if value == "":
         return default
-    need(isinstance(value, str) and re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+)?", value),
-         "{!r} is no number", value)
+    need(
+        isinstance(value, str) and re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+)?", value),
+        "{!r} is no number",
+        value,
+    )
     return float(value.upper().replace("D", "E"))
 
 
@@ -158,7 +161,7 @@ class File:
         e = Entity()
         e.de, e.type, e.form = de, integer_of(fields[0]), integer_of(fields[13])
         e.level, e.matrix, e.color = (integer_of(fields[i]) for i in (4, 6, 11))
-        e.status = (first[64:72].replace(" ", "0"))
+        e.status = first[64:72].replace(" ", "0")
         e.label, e.subscript = fields[16], fields[17]
         e.what = "%d form %d at D%d" % (e.type, e.form, de)
         start, count = integer_of(fields[1]), integer_of(fields[12], 1)

@@ -35,8 +35,9 @@ def ours_surface(d, factor):
     (du, dv), (nu, nv) = d["degrees"], d["counts"]
     ku, kv = d["knots_u"], d["knots_v"]
     points = [times(p, factor) for p in d["points"]]
-    return shapes.spline_surface(du, dv, nu, nv, ku, kv, d["weights"] or [1.0] * len(points), points,
-                                 (ku[du], ku[nu], kv[dv], kv[nv]))
+    return shapes.spline_surface(
+        du, dv, nu, nv, ku, kv, d["weights"] or [1.0] * len(points), points, (ku[du], ku[nu], kv[dv], kv[nv])
+    )
 
 
 def de_of(entity):
@@ -50,9 +51,17 @@ class Comparison:
         f = model.file
         # Ours in the units of the file's own numbers.
         self.factor = MILLIMETRES[dump["units"]] / (f.millimetres / f.scale)
-        self.size = max([1e-300] + [abs(x) * self.factor for p in dump["parts"] for face in p["faces"]
-                                    for q in face["surface"]["points"] for x in q]
-                        + [abs(x) * self.factor for c in dump["curves"] for q in c["curve"]["points"] for x in q])
+        self.size = max(
+            [1e-300]
+            + [
+                abs(x) * self.factor
+                for p in dump["parts"]
+                for face in p["faces"]
+                for q in face["surface"]["points"]
+                for x in q
+            ]
+            + [abs(x) * self.factor for c in dump["curves"] for q in c["curve"]["points"] for x in q]
+        )
         self.checked = {"faces": 0, "curves": 0, "loops": 0}
 
     def say(self, text, *values):
@@ -114,8 +123,12 @@ class Comparison:
 
     def spline_surface(self, what, own, samples, other):
         a, b = own.spline, other.spline
-        if (a.du, a.dv) != (b.du, b.dv) or any(abs(x - y) > CLOSE * (1 + abs(y)) for x, y in zip(own.range, other.range)):
-            self.say("{}: degrees or range {} {} instead of {} {}", what, (a.du, a.dv), own.range, (b.du, b.dv), other.range)
+        if (a.du, a.dv) != (b.du, b.dv) or any(
+            abs(x - y) > CLOSE * (1 + abs(y)) for x, y in zip(own.range, other.range)
+        ):
+            self.say(
+                "{}: degrees or range {} {} instead of {} {}", what, (a.du, a.dv), own.range, (b.du, b.dv), other.range
+            )
             return
         for u, v, *_ in samples:
             self.near("%s at %g, %g" % (what, u, v), norm(minus(own.at(u, v), other.at(u, v))))
@@ -190,8 +203,10 @@ class Comparison:
             flat = ours_curve(e["flat"])
             places = [flat.at(flat.t0 + (flat.t1 - flat.t0) * k / 6) for k in range(7)]
             width = max(u1 - u0, v1 - v0)
-            if any(not (u0 - 1e-6 * width <= u <= u1 + 1e-6 * width and v0 - 1e-6 * width <= v <= v1 + 1e-6 * width)
-                   for u, v, _ in places):
+            if any(
+                not (u0 - 1e-6 * width <= u <= u1 + 1e-6 * width and v0 - 1e-6 * width <= v <= v1 + 1e-6 * width)
+                for u, v, _ in places
+            ):
                 self.say("{} edge {}: its parameters leave the surface", what, i)
                 continue
             if e["curve"]:
@@ -324,8 +339,11 @@ class Comparison:
         if len([c for c in self.dump["curves"] if de_of(c["entity"]) == pieces[0].entity.de]) > 1:
             return False
         self.near("%s: points" % pieces[0].entity.what, max(mine.off(p) for c in pieces for p in c.samples(5)), FORMULA)
-        self.near("%s: our points" % pieces[0].entity.what,
-                  max(min(c.off(p) for c in pieces) for p in mine.samples(9)), FORMULA)
+        self.near(
+            "%s: our points" % pieces[0].entity.what,
+            max(min(c.off(p) for c in pieces) for p in mine.samples(9)),
+            FORMULA,
+        )
         return True
 
     def header(self):
@@ -345,21 +363,34 @@ class Comparison:
 
 def seen(model):
     """What the second reader sees, as plain data."""
+
     def curve(c):
         return {"samples": c.samples(5)}
 
     def face(f):
         s = f.surface
         u0, u1, v0, v1 = s.range
-        return {"chain": f.chain, "range": s.range, "reversed": f.reversed, "name": model.name(f.entity),
-                "color": model.color(f.entity), "level": model.level(f.entity),
-                "samples": [s.at(u0 + (u1 - u0) * i / 4, v0 + (v1 - v0) * j / 3) for i in range(5) for j in range(4)]
-                if s.is_bounded() else [], "loops": [[curve(c) for c in loop] for loop in f.loops]}
+        return {
+            "chain": f.chain,
+            "range": s.range,
+            "reversed": f.reversed,
+            "name": model.name(f.entity),
+            "color": model.color(f.entity),
+            "level": model.level(f.entity),
+            "samples": [s.at(u0 + (u1 - u0) * i / 4, v0 + (v1 - v0) * j / 3) for i in range(5) for j in range(4)]
+            if s.is_bounded()
+            else [],
+            "loops": [[curve(c) for c in loop] for loop in f.loops],
+        }
 
-    return {"unit_mm": model.file.millimetres, "scale": model.file.scale, "entities": model.counts(),
-            "parts": [{"kind": p.kind, "de": p.entity.de, "faces": [face(f) for f in p.faces]} for p in model.parts],
-            "curves": [{"de": c.entity.de, **curve(c)} for c in model.curves],
-            "groups": [{"de": g.de, "name": model.name(g), "members": m} for g, m in model.groups()]}
+    return {
+        "unit_mm": model.file.millimetres,
+        "scale": model.file.scale,
+        "entities": model.counts(),
+        "parts": [{"kind": p.kind, "de": p.entity.de, "faces": [face(f) for f in p.faces]} for p in model.parts],
+        "curves": [{"de": c.entity.de, **curve(c)} for c in model.curves],
+        "groups": [{"de": g.de, "name": model.name(g), "members": m} for g, m in model.groups()],
+    }
 
 
 def main():

@@ -34,8 +34,7 @@ def split_sections(data):
         need(line[73:] == "%7d" % len(sections[letter]), "line {}: sequence number {!r}", number, line[73:])
     need(order == "SGDPT", "sections come in the order {}", order)
     counts = "".join("%s%7d" % (letter, len(sections[letter])) for letter in "SGDP")
-    need(len(sections["T"]) == 1 and sections["T"][0][:72] == counts.ljust(72),
-         "terminate line {!r}", sections["T"][0])
+    need(len(sections["T"]) == 1 and sections["T"][0][:72] == counts.ljust(72), "terminate line {!r}", sections["T"][0])
     return sections
 
 
@@ -101,8 +100,12 @@ class Reader:
 
     def integer(self):
         value = self.take()
-        need(isinstance(value, str) and re.fullmatch(r"-?(0|[1-9]\d*)", value),
-             "{}: {!r} is no integer", self.what, value)
+        need(
+            isinstance(value, str) and re.fullmatch(r"-?(0|[1-9]\d*)", value),
+            "{}: {!r} is no integer",
+            self.what,
+            value,
+        )
         return int(value)
 
     def real(self):
@@ -113,8 +116,12 @@ class Reader:
         digits = value.split("E")[0].lstrip("-").replace(".", "").strip("0")
         shortest = repr(number).split("e")[0].lstrip("-").replace(".", "").strip("0")
         # Integers beyond 2^53 may be written out; every other number has its shortest digits.
-        need(len(digits) <= len(shortest) or abs(number) >= 2.0**53,
-             "{}: {!r} has more digits than it needs", self.what, value)
+        need(
+            len(digits) <= len(shortest) or abs(number) >= 2.0**53,
+            "{}: {!r} has more digits than it needs",
+            self.what,
+            value,
+        )
         return number
 
     def reals(self, count):
@@ -158,8 +165,9 @@ def parse_global(lines):
     need((reader.integer(), reader.integer()) == (11, 0), "version or drafting standard")
     g["changed"], g["protocol"] = reader.string(), reader.string()
     for time in (g["time"], g["changed"]):
-        need(re.fullmatch(r"\d{4}(0[1-9]|1[0-2])([0-2]\d|3[01])\.([01]\d|2[0-3])[0-5]\d[0-5]\d", time),
-             "date {!r}", time)
+        need(
+            re.fullmatch(r"\d{4}(0[1-9]|1[0-2])([0-2]\d|3[01])\.([01]\d|2[0-3])[0-5]\d[0-5]\d", time), "date {!r}", time
+        )
     need(0 < g["resolution"], "resolution {}", g["resolution"])
     reader.end()
     return g
@@ -183,8 +191,7 @@ def parse_directory(sections):
 
         def integer(index):
             text = fields[index]
-            need(re.fullmatch(r" *-?\d+", text),
-                 "{}: field {!r} is not a right-justified integer", what, text)
+            need(re.fullmatch(r" *-?\d+", text), "{}: field {!r} is not a right-justified integer", what, text)
             return int(text)
 
         e.type, e.first, e.level, e.color, e.count, e.form = (integer(i) for i in (0, 1, 4, 11, 12, 13))
@@ -193,14 +200,12 @@ def parse_directory(sections):
         need(re.fullmatch(r"\d{8}", fields[8]), "{}: status {!r}", what, fields[8])
         need(fields[14].strip() == fields[15].strip() == "", "{}: reserved fields", what)
         e.status = fields[8]
-        need(int(e.status[2:4]) <= 3 and int(e.status[4:6]) <= 6 and int(e.status[6:]) <= 2,
-             "{}: status", what)
+        need(int(e.status[2:4]) <= 3 and int(e.status[4:6]) <= 6 and int(e.status[6:]) <= 2, "{}: status", what)
         e.label = fields[16].lstrip()
         need(fields[16] == e.label.rjust(8), "{}: label is not right-justified", what)
         integer(17)
         # Parameter lines: whole, in order, each with the pointer back.
-        need(e.first == next_line and e.count >= 1,
-             "{}: parameters at {}, expected at {}", what, e.first, next_line)
+        need(e.first == next_line and e.count >= 1, "{}: parameters at {}, expected at {}", what, e.first, next_line)
         own = parameters[e.first - 1 : e.first - 1 + e.count]
         need(len(own) == e.count, "{}: parameter lines run out", what)
         next_line += e.count
@@ -224,8 +229,7 @@ def read_surface(r, e):
     e.range = r.reals(4)
     check_knots(s.ku, e.what)
     check_knots(s.kv, e.what)
-    need(e.range == [s.ku[s.du], s.ku[s.nu], s.kv[s.dv], s.kv[s.nv]],
-         "{}: parameter range {}", e.what, e.range)
+    need(e.range == [s.ku[s.du], s.ku[s.nu], s.kv[s.dv], s.kv[s.nv]], "{}: parameter range {}", e.what, e.range)
     need(min(s.weights) > 0, "{}: weights", e.what)
     rows = [[(s.points[j * s.nu + i], s.weights[j * s.nu + i]) for i in range(s.nu)] for j in range(s.nv)]
     closed_u = clamped(s.ku, s.du) and all(row[0] == row[-1] for row in rows)
@@ -244,8 +248,7 @@ def read_curve(r, e):
     check_knots(c.k, e.what)
     need(e.range == [c.k[c.d], c.k[c.n]], "{}: parameter range", e.what)
     closed = clamped(c.k, c.d) and c.points[0] == c.points[-1] and c.weights[0] == c.weights[-1]
-    need(e.flags[1:] == [int(closed), int(min(c.weights) == max(c.weights)), 0],
-         "{}: flags {}", e.what, e.flags)
+    need(e.flags[1:] == [int(closed), int(min(c.weights) == max(c.weights)), 0], "{}: flags {}", e.what, e.flags)
     size = max(max(map(abs, p)) for p in c.points)
     if e.flags[0]:
         need(abs(math.hypot(*e.normal) - 1) < 1e-14, "{}: normal of the plane", e.what)
@@ -339,8 +342,7 @@ def check_pointers(entities):
             if e.type != 402:
                 parents[pointer].append(e.de)
         if e.color:
-            need(e.color < 0 and entities.get(-e.color) and entities[-e.color].type == 314,
-                 "{}: colour", e.what)
+            need(e.color < 0 and entities.get(-e.color) and entities[-e.color].type == 314, "{}: colour", e.what)
     for e in entities.values():
         inside = any(entities[p].type != 402 for p in parents[e.de]) and e.type != 406
         need(e.status[2:4] == ("01" if inside else "00"), "{}: subordinate flag of {!r}", e.what, e.status)
@@ -349,8 +351,12 @@ def check_pointers(entities):
 
 
 def is_flat(e, entities):
-    return any(e.de in [c.flat, *getattr(entities[c.flat], "parts", [])] if c.type == 142 else c.type == 508 and [e.de] in c.flats
-               for c in entities.values())
+    return any(
+        e.de in [c.flat, *getattr(entities[c.flat], "parts", [])]
+        if c.type == 142
+        else c.type == 508 and [e.de] in c.flats
+        for c in entities.values()
+    )
 
 
 def curves_of(e, entities):

@@ -5,8 +5,16 @@ import shapes
 from any_iges import File, Values, need
 from shapes import Place
 
-STANDARD_COLORS = {1: (0, 0, 0), 2: (100, 0, 0), 3: (0, 100, 0), 4: (0, 0, 100), 5: (100, 100, 0), 6: (100, 0, 100),
-                   7: (0, 100, 100), 8: (100, 100, 100)}
+STANDARD_COLORS = {
+    1: (0, 0, 0),
+    2: (100, 0, 0),
+    3: (0, 100, 0),
+    4: (0, 0, 100),
+    5: (100, 100, 0),
+    6: (100, 0, 100),
+    7: (0, 100, 100),
+    8: (100, 100, 100),
+}
 CURVES = {100, 102, 104, 106, 110, 112, 126, 130}
 COPIOUS_CURVES = {11, 12, 13, 63}
 SURFACES = {108, 114, 118, 120, 122, 128, 140, 190, 192, 194, 196, 198}
@@ -123,8 +131,7 @@ class Model:
     def analytic_pointers(self, e):
         v = Values(e.values, e.what)
         # Behind the place: pointers, reals, pointers.
-        before, reals, behind = {190: (2, 0, 0), 192: (1, 1, 1), 194: (1, 2, 1), 196: (0, 1, 2),
-                                 198: (1, 2, 1)}[e.type]
+        before, reals, behind = {190: (2, 0, 0), 192: (1, 1, 1), 194: (1, 2, 1), 196: (0, 1, 2), 198: (1, 2, 1)}[e.type]
         found = v.integers(1) + v.integers(before)
         v.reals(reals)
         found += v.integers(behind)
@@ -360,7 +367,9 @@ class Model:
         loops = [self.loop_508(p, e) for p in v.integers(n)]
         place = place.after(self.own_place(e))
         # A mirror image of a solid has its outside outside.
-        return self.face(self.surface(surface, e), [parent.de, e.de, surface], e, place, loops, turned != place.mirrors())
+        return self.face(
+            self.surface(surface, e), [parent.de, e.de, surface], e, place, loops, turned != place.mirrors()
+        )
 
     def shell_514(self, de, parent, place, turned=False):
         e = self.target(de, parent, 514)

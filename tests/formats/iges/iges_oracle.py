@@ -98,7 +98,11 @@ def check_solid(solid, entities):
             normal = cross(s_u, s_v)
             length = math.hypot(*normal)
             need(len(outlines) == 1, "{}: plane with {} edges", face.what, len(outlines))
-            need(len(loop.flats[0]) == 1 and loop.uses[0][3] == 1, "{}: plane without a curve in its parameters", face.what)
+            need(
+                len(loop.flats[0]) == 1 and loop.uses[0][3] == 1,
+                "{}: plane without a curve in its parameters",
+                face.what,
+            )
             check_flat(loop, entities[face.on], entities[loop.flats[0][0]].curve, outlines[0])
             part = planar_flux(outlines[0], tuple(x / length for x in normal))
         else:
@@ -116,8 +120,7 @@ def check_solid(solid, entities):
             need(1 <= v <= len(points), "{}: vertex {}", solid.what, v)
             gap = math.hypot(*minus(points[v - 1], c.at(t)[0]))
             need(gap <= FEW_ULPS * space_size(c), "{}: a vertex is {} off its edge", solid.what, gap)
-    need(all(len(entities[p].vertices) <= len(vertices) for p, _ in vertices),
-         "{}: stray vertices", solid.what)
+    need(all(len(entities[p].vertices) <= len(vertices) for p, _ in vertices), "{}: stray vertices", solid.what)
     ring = len(shell.faces) == 1
     need(len(vertices) - count + len(shell.faces) == (0 if ring else 2), "{}: Euler's number", solid.what)
     return volume
@@ -196,7 +199,7 @@ def compare_faces(body, faces, entities):
     surfaces, outlines = iter(body["surfaces"]), iter(body["outlines"])
     compare_surface(faces[0], next(surfaces))
     at = 1
-    for style in (() if body["ring"] else (body["start"], body["end"])):
+    for style in () if body["ring"] else (body["start"], body["end"]):
         if style == "none":
             continue
         face = faces[at]
@@ -252,8 +255,13 @@ def compare(entities, g, sections, model):
             volume = check_solid(head, entities)
             # Gauss's rule is exact for the polynomial surfaces only.
             close = 1e-9 if all(f.flags[2] == 1 for f in faces) else 1e-6
-            need(abs(volume - body["volume"]) <= close * body["volume"],
-                 "{}: volume {} of {}", head.what, volume, body["volume"])
+            need(
+                abs(volume - body["volume"]) <= close * body["volume"],
+                "{}: volume {} of {}",
+                head.what,
+                volume,
+                body["volume"],
+            )
         else:
             # The entities' own order, not the group's.
             faces = [entities[m] for m in sorted(head.members)]

@@ -92,7 +92,11 @@ def grid_of(curve):
     """[(a, b, [(parameter, point)])] of its smooth parts."""
     stops = [curve.t0, *curve.corners, curve.t1]
     steps = max(4, 96 // (len(stops) - 1))
-    return [(a, b, [(t, curve.at(t)) for t in (a + (b - a) * i / steps for i in range(steps + 1))]) for a, b in zip(stops, stops[1:]) if b > a]
+    return [
+        (a, b, [(t, curve.at(t)) for t in (a + (b - a) * i / steps for i in range(steps + 1))])
+        for a, b in zip(stops, stops[1:])
+        if b > a
+    ]
 
 
 def nearest_on_curve(curve, p):
@@ -243,8 +247,10 @@ class Surface:
         u0, u1, v0, v1 = self.range
         h, k = 1e-6 * (u1 - u0), 1e-6 * (v1 - v0)
         a, b, c, d = max(u - h, u0), min(u + h, u1), max(v - k, v0), min(v + k, v1)
-        return (times(minus(self.at(b, v), self.at(a, v)), 1 / (b - a)),
-                times(minus(self.at(u, d), self.at(u, c)), 1 / (d - c)))
+        return (
+            times(minus(self.at(b, v), self.at(a, v)), 1 / (b - a)),
+            times(minus(self.at(u, d), self.at(u, c)), 1 / (d - c)),
+        )
 
     def back(self, p):
         """The point before the placement, whose matrix is orthogonal up to one factor."""
@@ -446,8 +452,9 @@ def analytic(kind, centre, axis, reference, *sizes):
             rho, h, out = radial(p)
             return plus(times(unit(out), rho - big), z, h)
 
-        formula = lambda u, v: world((big + small * math.cos(v)) * math.cos(u),
-                                     (big + small * math.cos(v)) * math.sin(u), small * math.sin(v))
+        formula = lambda u, v: world(
+            (big + small * math.cos(v)) * math.cos(u), (big + small * math.cos(v)) * math.sin(u), small * math.sin(v)
+        )
     whole = {196: (0.0, 2 * math.pi, -math.pi / 2, math.pi / 2), 198: (0.0, 2 * math.pi, 0.0, 2 * math.pi)}
     surface = Surface(formula, *whole.get(kind, (None,) * 4), normal)
     surface.off_formula = off

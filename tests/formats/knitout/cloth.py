@@ -18,7 +18,9 @@ class Chart:
         self.wale = float(re.search(r"^  wales \d+ pitch (\S+)$", text, re.MULTILINE)[1])
         self.course = float(re.search(r"^  courses \d+ pitch (\S+)$", text, re.MULTILINE)[1])
         self.moves, self.drops, self.order = {}, set(), {}
-        for word, row, wale, side, count in re.findall(r"^  (transfer|drop) (\d+) (\d+)(?: (right|left) (\d+))?$", text, re.MULTILINE):
+        for word, row, wale, side, count in re.findall(
+            r"^  (transfer|drop) (\d+) (\d+)(?: (right|left) (\d+))?$", text, re.MULTILINE
+        ):
             cell = (int(row) - 1, int(wale) - 1)
             self.order[cell] = len(self.order)
             if word == "drop":
@@ -95,12 +97,12 @@ class Cloth:
             ends = [0]
             for w in wales[1:]:
                 away = np.hypot(points[:, 0] - w * chart.wale, points[:, 1] - low)
-                away[:ends[-1] + 1] = np.inf
+                away[: ends[-1] + 1] = np.inf
                 ends.append(int(away.argmin()))
             ends.append(len(points) - 1)
             for i, w in enumerate(wales):
                 if row[w] != "M":
-                    self.stitches[r, w] = points[ends[i]:ends[i + 1] + 1]
+                    self.stitches[r, w] = points[ends[i] : ends[i + 1] + 1]
 
     def through(self, cell, other):
         """How often each half of a stitch passes through the loop of another one, from its back to its face.
@@ -115,13 +117,15 @@ class Cloth:
     def way(self, cell, turn):
         if (cell, turn) not in self.ways:
             stitch = self.stitches[cell][::turn]
-            half = stitch[:int(stitch[:, 1].argmax()) + 1]
+            half = stitch[: int(stitch[:, 1].argmax()) + 1]
             face = 1 if self.chart.beds[cell] == "f" else -1
             ahead = face * (half[:, 2] - half[0, 2])
             stop = int(np.argmax(ahead >= 0.6 * ahead.max())) if ahead.max() > 0 else len(half) - 1
             far = 100 * self.chart.wale
             start, end = half[0] - [0, 0, face * far], half[stop] + [0, 0, face * far]
-            self.ways[cell, turn] = np.vstack([start, half[:stop + 1], end, end - [far, 0, 0], start - [far, 0, 0], start])
+            self.ways[cell, turn] = np.vstack(
+                [start, half[: stop + 1], end, end - [far, 0, 0], start - [far, 0, 0], start]
+            )
         return self.ways[cell, turn]
 
 

@@ -252,8 +252,12 @@ def racked_rib(rackings, needles=4):
         made.row({2 * i + turn: f"t{'fb'[turn]}{2 * i + turn}" for i in range(1, needles + 1)})
     for racking in rackings:
         made.say("rack", racking)
-        made.row({**{2 * i: f"kf{2 * i}" for i in range(1, needles + 1)},
-                  **{2 * i + 1 + racking: f"kb{2 * i + 1}" for i in range(1, needles + 1)}})
+        made.row(
+            {
+                **{2 * i: f"kf{2 * i}" for i in range(1, needles + 1)},
+                **{2 * i + 1 + racking: f"kb{2 * i + 1}" for i in range(1, needles + 1)},
+            }
+        )
     return made
 
 

@@ -46,15 +46,24 @@ class Topology(KnitoutCase):
                 path = self.written(program)
                 chart = Chart(self.text_of(path))
                 lines = lines_of(self.succeeds("convert", path, "--to", "csv", "-o", "-", "--quiet").stdout)
-                self.assertEqual(sorted(lines), sorted(chart.yarn(r) for r, row in enumerate(chart.rows) if row.strip(".")))
+                self.assertEqual(
+                    sorted(lines), sorted(chart.yarn(r) for r, row in enumerate(chart.rows) if row.strip("."))
+                )
                 cloth = Cloth(chart, lines)
                 for cell, held in chart.through.items():
                     if chart.rows[cell[0]][cell[1]] in "TU":
                         continue
                     for other in chart.through:
-                        if other == cell or other[0] == cell[0] or abs(other[0] - cell[0]) > 4 or abs(other[1] - cell[1]) > 3:
+                        if (
+                            other == cell
+                            or other[0] == cell[0]
+                            or abs(other[0] - cell[0]) > 4
+                            or abs(other[1] - cell[1]) > 3
+                        ):
                             continue
-                        self.assertEqual(cloth.through(cell, other), (1, 1) if other in held else (0, 0), f"{cell} through {other}")
+                        self.assertEqual(
+                            cloth.through(cell, other), (1, 1) if other in held else (0, 0), f"{cell} through {other}"
+                        )
 
     def test_free_of_overlap(self):
         for name, program in LAID.items():
@@ -74,7 +83,9 @@ class Crossings(KnitoutCase):
                 with self.subTest(left=left, right=right, front=front):
                     path = self.written(cable(left, right, front))
                     chart = Chart(self.text_of(path))
-                    cloth = Cloth(chart, lines_of(self.succeeds("convert", path, "--to", "csv", "-o", "-", "--quiet").stdout))
+                    cloth = Cloth(
+                        chart, lines_of(self.succeeds("convert", path, "--to", "csv", "-o", "-", "--quiet").stdout)
+                    )
                     loops = {cell: by for cell, by in chart.moves.items() if by}
                     self.assertEqual(sorted(loops.values()), [-left] * right + [right] * left)
                     found = 0
@@ -84,7 +95,9 @@ class Crossings(KnitoutCase):
                                 heights = over(cloth.stitches[cell], cloth.stitches[other])
                                 found += len(heights)
                                 self.assertTrue(np.all(heights > 0 if front == "right" else heights < 0), heights)
-                    self.assertGreaterEqual(found, 3 * left * right)  # two legs over two legs, of which one may cross near the feet
+                    self.assertGreaterEqual(
+                        found, 3 * left * right
+                    )  # two legs over two legs, of which one may cross near the feet
 
 
 def over(first, second):
@@ -107,8 +120,8 @@ def over(first, second):
 
 def without_cast_on(loops, made):
     """The last `made` loops, as if nothing lay below them."""
-    kept = loops[len(loops) - made:]
-    below = set(loops[:len(loops) - made])
+    kept = loops[len(loops) - made :]
+    below = set(loops[: len(loops) - made])
     for loop in kept:
         loop.through = [other for other in loop.through if other not in below]
     return kept
@@ -128,34 +141,57 @@ class Writing(KnitoutCase):
                 if len(Machine(text).loops) == len(expected):  # no cast-on was needed
                     chart = Chart(self.text_of(path))
                     self.assertEqual(again.named_links(), chart.named_links())
-                    self.assertEqual([row.strip("M.") for row in again.rows if row.strip("M.")],
-                                     [row.strip("M.") for row in chart.rows if row.strip("M.")])
+                    self.assertEqual(
+                        [row.strip("M.") for row in again.rows if row.strip("M.")],
+                        [row.strip("M.") for row in chart.rows if row.strip("M.")],
+                    )
 
     def test_knits_of_texts(self):
         """Classics and charts: the written program knits the chart's stitches through each other."""
-        for form, rows, feeds in (("jersey", ["KKKKKK"] * 4, 1), ("rib 1x1", ["KPKPKP"] * 4, 1), ("rib 2x2", ["KKPPKK"] * 4, 1),
-                                  ("purl", ["KKKKKK", "PPPPPP"] * 2, 1), ("interlock", ["KPKPKP", "PKPKPK"] * 4, 2),
-                                  ("half-cardigan", ["KPKPKP", "KTKTKT"] * 2, 1), ("full-cardigan", ["KTKTKT", "TPTPTP"] * 2, 1),
-                                  ("milano", ["KPKPKP", "KMKMKM", "MPMPMP", "KPKPKP"], 1)):
+        for form, rows, feeds in (
+            ("jersey", ["KKKKKK"] * 4, 1),
+            ("rib 1x1", ["KPKPKP"] * 4, 1),
+            ("rib 2x2", ["KKPPKK"] * 4, 1),
+            ("purl", ["KKKKKK", "PPPPPP"] * 2, 1),
+            ("interlock", ["KPKPKP", "PKPKPK"] * 4, 2),
+            ("half-cardigan", ["KPKPKP", "KTKTKT"] * 2, 1),
+            ("full-cardigan", ["KTKTKT", "TPTPTP"] * 2, 1),
+            ("milano", ["KPKPKP", "KMKMKM", "MPMPMP", "KPKPKP"], 1),
+        ):
             with self.subTest(form):
-                path = self.written(f"fabric 1\nthread a\n  diameter 0.2\nend\nknit {form}\n  thread a\n  courses 4\n  wales 6\nend\n", "knit.txt")
+                path = self.written(
+                    f"fabric 1\nthread a\n  diameter 0.2\nend\nknit {form}\n  thread a\n  courses 4\n  wales 6\nend\n",
+                    "knit.txt",
+                )
                 written = self.succeeds("convert", path, "--to", "knitout", "-o", "-", "--quiet").stdout
                 loops = Machine(written).loops
                 made = sum(sign != "M" for row in rows for sign in row)
                 self.assertIn(len(loops) - made, (0, 6, 12))
-                chart = Chart("  courses 1 pitch 1\n  wales 6 pitch 1\n" + f"  feeds {feeds}\n" + "  gating opposite\n" * (feeds > 1)
-                              + "  chart\n" + "".join(f"    {row}\n" for row in reversed(rows)) + "  end\n")
+                chart = Chart(
+                    "  courses 1 pitch 1\n  wales 6 pitch 1\n"
+                    + f"  feeds {feeds}\n"
+                    + "  gating opposite\n" * (feeds > 1)
+                    + "  chart\n"
+                    + "".join(f"    {row}\n" for row in reversed(rows))
+                    + "  end\n"
+                )
                 if form not in ("half-cardigan", "full-cardigan"):  # whose first tucks join the cast-on
                     self.assertEqual(named_links(without_cast_on(loops, made)), chart.named_links())
 
     def test_what_cannot_be_written(self):
         knit = "fabric 1\nthread a\n  diameter 0.2\nend\nknit jersey\n  thread a\n  courses 4\n  wales 6\n  {}\nend\n"
-        for text, message in ((knit.format("plating a"), "a plated knit is not written as knitout"),
-                              (knit.format("").replace("wales 6", "wales 1300"), "1300 wales are more than the 1200 needles"),
-                              (knit.format("chart\n   KPKPKP\n   KPKPKP\n   KPKPKP\n   KPKPKP\n  end\n  transfer 2 1 right 2\n  transfer 2 4 left 2")
-                               .replace(" jersey", ""), "loops of both beds are moved"),
-                              (pathlib.Path(SAMPLES / "weave_plain.txt").read_text(), "knitout holds one weft knit"),
-                              (pathlib.Path(SAMPLES / "back_piece.txt").read_text(), "knitout holds one weft knit")):
+        for text, message in (
+            (knit.format("plating a"), "a plated knit is not written as knitout"),
+            (knit.format("").replace("wales 6", "wales 1300"), "1300 wales are more than the 1200 needles"),
+            (
+                knit.format(
+                    "chart\n   KPKPKP\n   KPKPKP\n   KPKPKP\n   KPKPKP\n  end\n  transfer 2 1 right 2\n  transfer 2 4 left 2"
+                ).replace(" jersey", ""),
+                "loops of both beds are moved",
+            ),
+            (pathlib.Path(SAMPLES / "weave_plain.txt").read_text(), "knitout holds one weft knit"),
+            (pathlib.Path(SAMPLES / "back_piece.txt").read_text(), "knitout holds one weft knit"),
+        ):
             with self.subTest(message):
                 path = self.written(text, "other.txt")
                 self.assertIn(message, self.fails(1, "convert", path, "--to", "knitout", "-o", "-"))
@@ -188,7 +224,11 @@ class Recognition(KnitoutCase):
         text = self.text_of(self.written(program))
         self.assertIn("diameter 0.4\n", text)
         self.assertAlmostEqual(Chart(text).wale, 25.4 / 5, delta=1e-12)
-        for yarn, said in (("30 tex cotton, red", "tex 30"), ("Ne 20 cotton", "Ne 20"), ("75den polyester", "denier 75")):
+        for yarn, said in (
+            ("30 tex cotton, red", "tex 30"),
+            ("Ne 20 cotton", "Ne 20"),
+            ("75den polyester", "denier 75"),
+        ):
             with self.subTest(yarn):
                 program.lines[3] = f";;Yarn-1: {yarn}"
                 text = self.text_of(self.written(program))

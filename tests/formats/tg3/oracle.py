@@ -32,7 +32,7 @@ def section_points(element, ts):
         points = []
         for t in ts:
             sagitta = size[1] / 2 - shift if t < 0.5 else size[1] / 2 + shift
-            radius = (size[0] ** 2 / 4 + sagitta ** 2) / (2 * sagitta)
+            radius = (size[0] ** 2 / 4 + sagitta**2) / (2 * sagitta)
             reach = np.arcsin(size[0] / 2 / radius)
             turn = reach * ((1 - 4 * t) if t < 0.5 else (4 * t - 3))
             height = size[1] / 2 - radius * (1 - np.cos(turn))
@@ -56,7 +56,7 @@ def section_points(element, ts):
         piece = np.minimum((ts * count).astype(int), count - 1)
         s = (ts * count - piece)[:, None]
         p = [points[(3 * piece + k) % len(points)] for k in range(4)]
-        return (1 - s) ** 3 * p[0] + 3 * (1 - s) ** 2 * s * p[1] + 3 * (1 - s) * s ** 2 * p[2] + s ** 3 * p[3]
+        return (1 - s) ** 3 * p[0] + 3 * (1 - s) ** 2 * s * p[1] + 3 * (1 - s) * s**2 * p[2] + s**3 * p[3]
     if kind == "CSectionRotated":
         a = float(element.get("Angle"))
         return section_points(inner[0], ts) @ np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
@@ -81,9 +81,11 @@ class Yarn:
         self.angles = np.array([float(node.get("Angle", 0)) for node in nodes])
         self.repeats = [numbers(repeat.get("value")) for repeat in element.findall("Repeat")]
         law = element.find("Interpolation")
-        self.adjustments = [[(float(at.get("T")), numbers(at.get("Vector"))) for at in one] for one in law.findall("Adjustment")]
+        self.adjustments = [
+            [(float(at.get("T")), numbers(at.get("Vector"))) for at in one] for one in law.findall("Adjustment")
+        ]
         law = law if law.find("Interpolation") is None else law.find("Interpolation")
-        self.form = law.get("type")[len("CInterpolation"):]
+        self.form = law.get("type")[len("CInterpolation") :]
         self.is_periodic = law.get("Periodic", "1") == "1"
         self.flat_nodes = law.get("ForceMasterNodeTangent", "0") == "1"
         self.sections = element.find("YarnSection")
@@ -91,7 +93,9 @@ class Yarn:
         self.derivatives = self.cubic() if self.form == "Cubic" else None
         spans = range(len(self.points) - 1)
         steps = np.linspace(0, 1, 2001)
-        self.lengths = np.array([np.linalg.norm(np.diff(self.line(span, steps)[0], axis=0), axis=1).sum() for span in spans])
+        self.lengths = np.array(
+            [np.linalg.norm(np.diff(self.line(span, steps)[0], axis=0), axis=1).sum() for span in spans]
+        )
 
     def parameters(self):
         """Those of 720 even ones and of all polygons' corners."""
@@ -110,7 +114,7 @@ class Yarn:
         p, count = self.points, len(self.points)
         left, right = np.zeros((count, count)), np.zeros((count, 3))
         for i in range(1, count - 1):
-            left[i, i - 1:i + 2] = 1, 4, 1
+            left[i, i - 1 : i + 2] = 1, 4, 1
             right[i] = 3 * (p[i + 1] - p[i - 1])
         if self.is_periodic:
             left[0, 0], left[0, -1] = 1, -1
@@ -138,16 +142,16 @@ class Yarn:
         t = np.atleast_1d(t)[:, None]
         p, q = self.points[span], self.points[span + 1]
         if self.form == "Linear":
-            a, b = self.node_tangents()[span:span + 2]
+            a, b = self.node_tangents()[span : span + 2]
             place, tangent = p + t * (q - p), a + t * (b - a)
         else:
             if self.form == "Cubic":
-                a, b = self.derivatives[span:span + 2] / 3
+                a, b = self.derivatives[span : span + 2] / 3
             else:
-                a, b = self.node_tangents()[span:span + 2] * np.linalg.norm(q - p) / 3
+                a, b = self.node_tangents()[span : span + 2] * np.linalg.norm(q - p) / 3
             c = [p, p + a, q - b, q]
-            place = (1 - t) ** 3 * c[0] + 3 * (1 - t) ** 2 * t * c[1] + 3 * (1 - t) * t ** 2 * c[2] + t ** 3 * c[3]
-            tangent = (1 - t) ** 2 * (c[1] - c[0]) + 2 * (1 - t) * t * (c[2] - c[1]) + t ** 2 * (c[3] - c[2])
+            place = (1 - t) ** 3 * c[0] + 3 * (1 - t) ** 2 * t * c[1] + 3 * (1 - t) * t**2 * c[2] + t**3 * c[3]
+            tangent = (1 - t) ** 2 * (c[1] - c[0]) + 2 * (1 - t) * t * (c[2] - c[1]) + t**2 * (c[3] - c[2])
         if span < len(self.adjustments):
             at, by = zip(*self.adjustments[span])
             place = place + np.stack([np.interp(t[:, 0], at, np.array(by)[:, axis]) for axis in range(3)], 1)
@@ -159,22 +163,29 @@ class Yarn:
         if kind == "CYarnSectionConstant":
             return section_points(self.sections.find("Section"), self.ts)
         if kind == "CYarnSectionInterpNode":
-            here, following = self.sections.findall("NodeSection")[span:span + 2]
-            stations = [(0.0, here)] + [(float(one.get("t")), one) for one in here.findall("MidNodeSection")] + [(1.0, following)]
+            here, following = self.sections.findall("NodeSection")[span : span + 2]
+            stations = (
+                [(0.0, here)]
+                + [(float(one.get("t")), one) for one in here.findall("MidNodeSection")]
+                + [(1.0, following)]
+            )
             place = t
         else:
             stations = [(float(one.get("t")), one) for one in self.sections.findall("PositionSection")]
             stations = [(stations[-1][0] - 1, stations[-1][1])] + stations + [(stations[0][0] + 1, stations[0][1])]
             place = (self.lengths[:span].sum() + t * self.lengths[span]) / self.lengths.sum()
         number = max(i for i, station in enumerate(stations[:-1]) if station[0] <= place + 1e-12)
-        (a, first), (b, second) = stations[number:number + 2]
+        (a, first), (b, second) = stations[number : number + 2]
         share = (place - a) / (b - a)
         if self.sections.get("Ramped") == "1":
-            share = 3 * share ** 2 - 2 * share ** 3
+            share = 3 * share**2 - 2 * share**3
         p, q = (section_points(one.find("Section"), self.ts) for one in (first, second))
         if self.sections.get("Polar") != "1":
             return p + share * (q - p)
-        radii, angles = ([np.linalg.norm(one, axis=1) for one in (p, q)], [np.arctan2(one[:, 1], one[:, 0]) for one in (p, q)])
+        radii, angles = (
+            [np.linalg.norm(one, axis=1) for one in (p, q)],
+            [np.arctan2(one[:, 1], one[:, 0]) for one in (p, q)],
+        )
         turn = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
         radius, angle = radii[0] + share * (radii[1] - radii[0]), angles[0] + share * turn
         return np.stack([radius * np.cos(angle), radius * np.sin(angle)], 1)
@@ -203,6 +214,7 @@ class Yarn:
 
         def six(p, q, r):
             return np.einsum("...i,...i", p, np.cross(q, r)).sum()
+
         total = six(a, b1, a1) + six(a, b, b1)
         for row, sign in ((rows[0], 1), (rows[-1], -1)):
             middle = np.broadcast_to(row.mean(axis=0), row.shape)

@@ -29,29 +29,84 @@ def model(sections, form="Cubic", height=2, domain="", version="3.13.2", attribu
 </Yarn></Textile></TexGenModel>
 """
 
+
 # The x, z of a binder's nodes as TexGen 3.13.2 stores them of the weave below, by the type of the textile, with the
 # numbers of the nodes whose `Up` is -x and x.
 STORED = {
-    "Orthogonal": ([(.075, .05), (.119577393482, .000285067835), (.17639320225, -.011349732191), (.264885899083, -.019029584903),
-                    (.37639320225, -.02351698445), (.5, -.025), (.62360679775, -.02351698445), (.735114100917, -.019029584903),
-                    (.82360679775, -.011349732191), (.880422606518, .000285067835), (.925, .05), (1.075, .25),
-                    (1.119577393482, .299714932165), (1.17639320225, .311349732191), (1.264885899083, .319029584903),
-                    (1.37639320225, .32351698445), (1.5, .325), (1.62360679775, .32351698445), (1.735114100917, .319029584903),
-                    (1.82360679775, .311349732191), (1.880422606518, .299714932165), (1.925, .25), (2.075, .05)],
-                   (5, 16), (10, 11), (0, 21, 22)),
-    "AngleInterlock": ([(.119577393, .375285068), (.176393202, .363650268), (.264885899, .355970415), (.5, .35), (.735114101, .355970415),
-                        (.823606798, .363650268), (.880422607, .375285068), (1.119577393, .524714932), (1.176393202, .536349732), (1.5, .55),
-                        (1.823606798, .563650268), (1.880422607, .575285068), (2.119577393, .724714932), (2.176393202, .736349732),
-                        (2.264885899, .744029585), (2.5, .75), (2.735114101, .744029585), (2.823606798, .736349732), (2.880422607, .724714932),
-                        (3.119577393, .575285068), (3.176393202, .563650268), (3.5, .55), (3.823606798, .536349732), (3.880422607, .524714932),
-                        (4.119577393, .375285068)],
-                       (3, 9, 15, 21), (), ())}
+    "Orthogonal": (
+        [
+            (0.075, 0.05),
+            (0.119577393482, 0.000285067835),
+            (0.17639320225, -0.011349732191),
+            (0.264885899083, -0.019029584903),
+            (0.37639320225, -0.02351698445),
+            (0.5, -0.025),
+            (0.62360679775, -0.02351698445),
+            (0.735114100917, -0.019029584903),
+            (0.82360679775, -0.011349732191),
+            (0.880422606518, 0.000285067835),
+            (0.925, 0.05),
+            (1.075, 0.25),
+            (1.119577393482, 0.299714932165),
+            (1.17639320225, 0.311349732191),
+            (1.264885899083, 0.319029584903),
+            (1.37639320225, 0.32351698445),
+            (1.5, 0.325),
+            (1.62360679775, 0.32351698445),
+            (1.735114100917, 0.319029584903),
+            (1.82360679775, 0.311349732191),
+            (1.880422606518, 0.299714932165),
+            (1.925, 0.25),
+            (2.075, 0.05),
+        ],
+        (5, 16),
+        (10, 11),
+        (0, 21, 22),
+    ),
+    "AngleInterlock": (
+        [
+            (0.119577393, 0.375285068),
+            (0.176393202, 0.363650268),
+            (0.264885899, 0.355970415),
+            (0.5, 0.35),
+            (0.735114101, 0.355970415),
+            (0.823606798, 0.363650268),
+            (0.880422607, 0.375285068),
+            (1.119577393, 0.524714932),
+            (1.176393202, 0.536349732),
+            (1.5, 0.55),
+            (1.823606798, 0.563650268),
+            (1.880422607, 0.575285068),
+            (2.119577393, 0.724714932),
+            (2.176393202, 0.736349732),
+            (2.264885899, 0.744029585),
+            (2.5, 0.75),
+            (2.735114101, 0.744029585),
+            (2.823606798, 0.736349732),
+            (2.880422607, 0.724714932),
+            (3.119577393, 0.575285068),
+            (3.176393202, 0.563650268),
+            (3.5, 0.55),
+            (3.823606798, 0.536349732),
+            (3.880422607, 0.524714932),
+            (4.119577393, 0.375285068),
+        ],
+        (3, 9, 15, 21),
+        (),
+        (),
+    ),
+}
 
 
 def weave(kind, rows, binder, more=""):
     """A weave of x yarns of 0.8 x 0.1 and `binder` (width, height, power) beside y yarns of 0.8 x 0.1; rows of levels, from y = 0."""
-    cells = "".join(f'<PatternCell x="{x}" y="{y}">' + "".join(f'<PatternElement value="{level}"/>' for level in levels) + "</PatternCell>"
-                    for y, row in enumerate(rows) for x, levels in enumerate(row))
+    cells = "".join(
+        f'<PatternCell x="{x}" y="{y}">'
+        + "".join(f'<PatternElement value="{level}"/>' for level in levels)
+        + "</PatternCell>"
+        for y, row in enumerate(rows)
+        for x, levels in enumerate(row)
+    )
     sizes = [(0.8, 0.1), binder[:2]]
     xs = "".join(f'<XYarnData Width="{w}" Height="{h}" Spacing="1"/>' for w, h in sizes)
     return f"""<TexGenModel version="3.13.2"><Textile name="t" type="CTextile{kind}" NumXYarns="2" NumYYarns="{len(rows[0])}" GapSize="0"
@@ -61,8 +116,12 @@ WarpRatio="1" BinderRatio="1" WarpPower="0.6" WeftPower="0.6" BinderPower="{bind
 
 
 ORTHOGONAL = weave("Orthogonal", [["20102", "20102"], ["10202", "20201"]], (0.4, 0.05, 0.6))
-ANGLE = weave("AngleInterlock", [["201010102"] * 4, ["202010202", "202020102", "202020201", "202020102"]], (0.4, 0.1, 0.8))
-LAYERS = weave("LayerToLayer", [["201010102"] * 4, ["202020101", "202010102", "101020202", "201010202"]], (0.5, 0.05, 0.5))
+ANGLE = weave(
+    "AngleInterlock", [["201010102"] * 4, ["202010202", "202020102", "202020201", "202020102"]], (0.4, 0.1, 0.8)
+)
+LAYERS = weave(
+    "LayerToLayer", [["201010102"] * 4, ["202020101", "202010102", "101020202", "201010202"]], (0.5, 0.05, 0.5)
+)
 
 
 class Tg3(Case):
@@ -81,7 +140,9 @@ class Tg3(Case):
                 self.assertAlmostEqual(self.yarns(model(section, height=0))[0]["volume"], 10 * area, delta=1e-5)
 
     def test_volumes_are_those_of_the_oracle(self):
-        blended = "".join(f'<PositionSection t="{t}">{section}</PositionSection>' for t, section in ((0, ELLIPSE), (0.4, LENS)))
+        blended = "".join(
+            f'<PositionSection t="{t}">{section}</PositionSection>' for t, section in ((0, ELLIPSE), (0.4, LENS))
+        )
         attributes = 'type="CYarnSectionInterpPosition" Ramped="1" Polar="0"'
         for form in ("Cubic", "Bezier", "Linear"):
             for text in (model(LENS, form), model(blended, form, attributes=attributes)):
@@ -101,34 +162,57 @@ class Tg3(Case):
     def test_sections_of_straight_yarns_have_the_area_of_formulas(self):
         def points(name, *pairs):
             return "".join(f'<{name} value="{x},{y}"/>' for x, y in pairs)
+
         polygon = points("PolygonPoint", (1, 0), (1, 0.5), (0, 1), (-1, 0), (0, -1))
         # Of a quarter (1,0) (1,k) (k,1) (0,1) the area about the origin is that below, by integration.
         k = 0.5
-        bezier = points("BezierPoint", (1, 0), (1, k), (k, 1), (0, 1), (-k, 1), (-1, k), (-1, 0), (-1, -k), (-k, -1), (0, -1), (k, -1), (1, -k))
+        bezier = points(
+            "BezierPoint",
+            (1, 0),
+            (1, k),
+            (k, 1),
+            (0, 1),
+            (-k, 1),
+            (-1, k),
+            (-1, 0),
+            (-1, -k),
+            (-k, -1),
+            (0, -1),
+            (k, -1),
+            (1, -k),
+        )
         circle = '<Section type="CSectionEllipse" Width="2" Height="2"/>'
         for text, area in (
-                (f'<Section type="CSectionPolygon" RetainPoints="0">{polygon}</Section>', 2.25),
-                (f'<Section type="CSectionPolygon" RetainPoints="1">{polygon}</Section>', 2.25),
-                (f'<Section type="CSectionBezier">{bezier}</Section>', 4 * (0.5 + 0.6 * k - 0.15 * k * k)),
-                (f'<Section type="CSectionHybrid"><Division Value="0"/><Division Value="0.5"/>{ELLIPSE}{circle}</Section>',
-                 math.pi / 4 + math.pi / 2),
-                (f'<Section type="CSectionRotated" Angle="0.34">{ELLIPSE}</Section>', math.pi / 2),
-                (f'<Section type="CSectionScaled" Scale="2,1.5">{ELLIPSE}</Section>', 1.5 * math.pi)):
+            (f'<Section type="CSectionPolygon" RetainPoints="0">{polygon}</Section>', 2.25),
+            (f'<Section type="CSectionPolygon" RetainPoints="1">{polygon}</Section>', 2.25),
+            (f'<Section type="CSectionBezier">{bezier}</Section>', 4 * (0.5 + 0.6 * k - 0.15 * k * k)),
+            (
+                f'<Section type="CSectionHybrid"><Division Value="0"/><Division Value="0.5"/>{ELLIPSE}{circle}</Section>',
+                math.pi / 4 + math.pi / 2,
+            ),
+            (f'<Section type="CSectionRotated" Angle="0.34">{ELLIPSE}</Section>', math.pi / 2),
+            (f'<Section type="CSectionScaled" Scale="2,1.5">{ELLIPSE}</Section>', 1.5 * math.pi),
+        ):
             with self.subTest(text):
                 self.assertAlmostEqual(self.yarns(model(text, height=0))[0]["volume"] / (10 * area), 1, delta=1e-5)
 
     def test_binders_have_the_nodes_that_texgen_stores(self):
-        for text, kind, width, height, power, warps, y_yarns in ((ORTHOGONAL, "Orthogonal", 0.4, 0.05, 0.6, 1, 2), (ANGLE, "AngleInterlock", 0.4, 0.1, 0.8, 3, 4)):
+        for text, kind, width, height, power, warps, y_yarns in (
+            (ORTHOGONAL, "Orthogonal", 0.4, 0.05, 0.6, 1, 2),
+            (ANGLE, "AngleInterlock", 0.4, 0.1, 0.8, 3, 4),
+        ):
             nodes, along, behind, ahead = STORED[kind]
             rows = ""
             for number, (x, z) in enumerate(nodes):
                 up = "-1,0,0" if number in behind else "1,0,0" if number in ahead else "0,0,1"
                 rows += f'<MasterNode Position="{x},1.5,{z}" Tangent="{int(number in along)},0,0" Up="{up}"/>\n'
             stored = self.folder / "stored.tg3"
-            stored.write_text(f"""<TexGenModel version="3.13.2"><Textile name="t" type="CTextile"><Yarn index="0">
+            stored.write_text(
+                f"""<TexGenModel version="3.13.2"><Textile name="t" type="CTextile"><Yarn index="0">
 <Interpolation Periodic="1" type="CInterpolationBezier"/><YarnSection type="CYarnSectionConstant">
 <Section type="CSectionPowerEllipse" Width="{width}" Height="{height}" Power="{power}" XOffset="0"/></YarnSection>{rows}</Yarn></Textile></TexGenModel>
-""")
+"""
+            )
             with self.subTest(kind):
                 done = self.succeeds("info", "--json", stored)
                 expected = json.loads(done.stdout)["inputs"][0]["yarns"][0]
@@ -161,27 +245,44 @@ class Tg3(Case):
 
     def test_bad_input(self):
         whole = model(ELLIPSE)
-        laughs = '<!DOCTYPE x [<!ENTITY a0 "ha">' + "".join(f'<!ENTITY a{k + 1} "{f"&a{k};" * 10}">' for k in range(20)) + "]>\n"
-        without = whole[:whole.index("<YarnSection")] + whole[whole.index("<Repeat"):]
-        for text, said in ((whole.replace("<TexGen", laughs + "<TexGen").replace('name="t"', 'name="&a20;"'), "error: the file has a document type"),
-                           (model(ELLIPSE, version="2.9"), "error: the model has the version '2.9': 3 is read"),
-                           (whole.replace(' version="3.13.2"', ""), "error: the model has the version ''"),
-                           (without, "YarnSection"),
-                           (ORTHOGONAL.replace('value="2"', 'value="3"', 1), "value"),
-                           (ORTHOGONAL.replace('<PatternElement value="2"/></PatternCell>', "</PatternCell>", 1), "levels, at the first one"),
-                           (ORTHOGONAL.replace('WarpPower="0.6"', 'WarpPower="0"'), "error: the power 0 of a section"),
-                           (ORTHOGONAL.replace('WarpRatio="1" BinderRatio="1"', 'WarpRatio="0" BinderRatio="0"'), "are both 0"),
-                           (ANGLE.replace("AngleInterlock", "OffsetAngleInterlock"), "is not built from its parameters")):
+        laughs = (
+            '<!DOCTYPE x [<!ENTITY a0 "ha">'
+            + "".join(f'<!ENTITY a{k + 1} "{f"&a{k};" * 10}">' for k in range(20))
+            + "]>\n"
+        )
+        without = whole[: whole.index("<YarnSection")] + whole[whole.index("<Repeat") :]
+        for text, said in (
+            (
+                whole.replace("<TexGen", laughs + "<TexGen").replace('name="t"', 'name="&a20;"'),
+                "error: the file has a document type",
+            ),
+            (model(ELLIPSE, version="2.9"), "error: the model has the version '2.9': 3 is read"),
+            (whole.replace(' version="3.13.2"', ""), "error: the model has the version ''"),
+            (without, "YarnSection"),
+            (ORTHOGONAL.replace('value="2"', 'value="3"', 1), "value"),
+            (
+                ORTHOGONAL.replace('<PatternElement value="2"/></PatternCell>', "</PatternCell>", 1),
+                "levels, at the first one",
+            ),
+            (ORTHOGONAL.replace('WarpPower="0.6"', 'WarpPower="0"'), "error: the power 0 of a section"),
+            (ORTHOGONAL.replace('WarpRatio="1" BinderRatio="1"', 'WarpRatio="0" BinderRatio="0"'), "are both 0"),
+            (ANGLE.replace("AngleInterlock", "OffsetAngleInterlock"), "is not built from its parameters"),
+        ):
             with self.subTest(said):
                 self.assertIn(said, self.fails(1, "info", self.file(text)))
 
     def test_bad_models(self):
         whole = model(ELLIPSE)
-        for text, said in ((model(ELLIPSE, version="4.0"), ":2:1: error: the model has the version '4.0'"),
-                           (whole[:300], "error: this is no whole XML text"),
-                           (whole.replace(ELLIPSE, ""), "error: this <YarnSection> has no <Section>"),
-                           (whole.replace("<TexGen", '<!DOCTYPE x [<!ENTITY a "b">]>\n<TexGen'), "error: the file has a document type"),
-                           (whole.replace("5,0,2", "5,0"), "error: the Position of <MasterNode> is '5,0'")):
+        for text, said in (
+            (model(ELLIPSE, version="4.0"), ":2:1: error: the model has the version '4.0'"),
+            (whole[:300], "error: this is no whole XML text"),
+            (whole.replace(ELLIPSE, ""), "error: this <YarnSection> has no <Section>"),
+            (
+                whole.replace("<TexGen", '<!DOCTYPE x [<!ENTITY a "b">]>\n<TexGen'),
+                "error: the file has a document type",
+            ),
+            (whole.replace("5,0,2", "5,0"), "error: the Position of <MasterNode> is '5,0'"),
+        ):
             with self.subTest(said):
                 self.assertIn(said, self.fails(1, "info", self.file(text)))
 

@@ -100,8 +100,10 @@ def obj(path):
             assert word in ("#", "g"), line
     starts = np.cumsum([0] + [max(map(max, mesh.rows)) + 1 for mesh in meshes])
     assert starts[-1] == len(points)
-    return [Mesh(mesh.name, points[begin:end], mesh.rows, mesh.color)
-            for mesh, begin, end in zip(meshes, starts, starts[1:])]
+    return [
+        Mesh(mesh.name, points[begin:end], mesh.rows, mesh.color)
+        for mesh, begin, end in zip(meshes, starts, starts[1:])
+    ]
 
 
 def ply(path):
@@ -111,9 +113,16 @@ def ply(path):
     lines = head.decode().splitlines()
     counts = {words[1]: int(words[2]) for words in map(str.split, lines) if words[0] == "element"}
     properties = [line for line in lines if line.startswith("property")]
-    assert properties == ["property double x", "property double y", "property double z", "property uchar red",
-                          "property uchar green", "property uchar blue", "property int yarn",
-                          "property list uchar int vertex_indices"], properties
+    assert properties == [
+        "property double x",
+        "property double y",
+        "property double z",
+        "property uchar red",
+        "property uchar green",
+        "property uchar blue",
+        "property int yarn",
+        "property list uchar int vertex_indices",
+    ], properties
     vertex = np.dtype([("p", "<f8", 3), ("color", "u1", 3), ("yarn", "<i4")])
     face = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
     assert len(rest) == counts["vertex"] * vertex.itemsize + counts["face"] * face.itemsize
@@ -129,7 +138,9 @@ def ply(path):
         used, numbers = np.unique(own, return_inverse=True)
         colors = np.unique(vertices["color"][used], axis=0)
         assert len(colors) == 1
-        meshes.append(Mesh(names[str(number)], vertices["p"][used], numbers.reshape(-1, 3), tuple(int(c) for c in colors[0])))
+        meshes.append(
+            Mesh(names[str(number)], vertices["p"][used], numbers.reshape(-1, 3), tuple(int(c) for c in colors[0]))
+        )
     assert sum(len(mesh.points) for mesh in meshes) == counts["vertex"], "a vertex of no face"
     return meshes, lines
 
@@ -144,11 +155,11 @@ def gltf_parts(path):
         return document, base64.b64decode(letters, validate=True)
     version, total, length, kind = struct.unpack("<III4s", data[4:20])
     assert (version, total, kind, length % 4) == (2, len(data), b"JSON", 0)
-    document = json.loads(data[20:20 + length].decode())
-    size, kind = struct.unpack("<I4s", data[20 + length:28 + length])
+    document = json.loads(data[20 : 20 + length].decode())
+    size, kind = struct.unpack("<I4s", data[20 + length : 28 + length])
     assert kind == b"BIN\0" and size % 4 == 0 and 28 + length + size == total
     assert "uri" not in document["buffers"][0]
-    return document, data[28 + length:]
+    return document, data[28 + length :]
 
 
 COMPONENTS = {5126: "<f4", 5125: "<u4"}
@@ -202,5 +213,7 @@ def gltf(path, in_metres=False):
         assert np.allclose(matrix[3], [0, 0, 0, 1])
         if not np.array_equal(matrix, np.eye(4)):
             points = points.astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
-        meshes.append(Mesh(nodes[k]["name"], points, indices.reshape(-1, 3), tuple(int(c) for c in np.round(255 * shares))))
+        meshes.append(
+            Mesh(nodes[k]["name"], points, indices.reshape(-1, 3), tuple(int(c) for c in np.round(255 * shares)))
+        )
     return meshes

@@ -26,11 +26,19 @@ FAULTS = [
     ("weavepoint_stripes.wif", [("[WARP COLORS]", "[WARP COLORS]\n2=0")], "3: error: color 0 "),
     ("weavepoint_stripes.wif", [("[WEFT COLORS]", "[WEFT COLORS]\n2=0")], "3: error: color 0 "),
     ("weavepoint_stripes.wif", [("[COLOR TABLE]", "[NOTES]")], r"3: error: color 1, but there is no \[COLOR TABLE\]"),
-    ("weavepoint_stripes.wif", [("Treadles=4", "Treadles=3")], r"3: error: treadle 4 is beyond the 3 treadles of \[WEAVING\]"),
+    (
+        "weavepoint_stripes.wif",
+        [("Treadles=4", "Treadles=3")],
+        r"3: error: treadle 4 is beyond the 3 treadles of \[WEAVING\]",
+    ),
     ("weavepoint_stripes.wif", [("[TIEUP]", "[NOTES]")], r"1: error: \[TREADLING\] needs \[TIEUP\], which is missing"),
     ("handweaving_net.wif", [("[TREADLING]", "[NOTES]")], r"\d+: error: \[TREADLING\] is missing"),
     ("handweaving_net.wif", [("Shafts=6", "Shafts=5")], r"\d: error: shaft 6 is beyond the 5 shafts of \[WEAVING\]"),
-    ("arahweave_satin.wif", [("[LIFTPLAN]", "[NOTES]")], r"\d+: error: there is neither \[LIFTPLAN\] nor \[TIEUP\] and \[TREADLING\]"),
+    (
+        "arahweave_satin.wif",
+        [("[LIFTPLAN]", "[NOTES]")],
+        r"\d+: error: there is neither \[LIFTPLAN\] nor \[TIEUP\] and \[TREADLING\]",
+    ),
     ("tempoweave_liftplan.wif", [("[THREADING]", "[NOTES]")], r"\d+: error: .*\[THREADING\] is missing"),
     ("adacad_bitmap.wif", [("4=4", "4=four")], r"3: error: 'four' is no whole number"),
     ("sinking_countermarch.wif", [("units=Decipoints", "units=points")], r"7: error: 'points' is no unit of a WIF"),
@@ -46,8 +54,10 @@ class Text:
         threads = re.findall(r"^thread (\S+)\n  diameter (\S+)\n(?:  color (\d+) (\d+) (\d+)\n)?", text, re.MULTILINE)
         self.color = {name: tuple(map(int, rgb)) if rgb[0] else None for name, _, *rgb in threads}
         self.diameter = {name: float(diameter) * self.unit for name, diameter, *_ in threads}
-        self.systems = {name: (names.split(","), int(count), float(pitch) * self.unit) for name, names, count, pitch
-                        in re.findall(r"^  (warp|weft) (\S+) (\d+) pitch (\S+)$", text, re.MULTILINE)}
+        self.systems = {
+            name: (names.split(","), int(count), float(pitch) * self.unit)
+            for name, names, count, pitch in re.findall(r"^  (warp|weft) (\S+) (\d+) pitch (\S+)$", text, re.MULTILINE)
+        }
         self.rows = re.search(r"^  draft\n((?:    [01]+\n)+)  end$", text, re.MULTILINE)[1].split()
 
 
@@ -98,7 +108,7 @@ class Reading(WifCase):
         lines = (OWN / name).read_bytes().replace(b"\r", b"\n").replace(b"\n\n", b"\n").decode().split("\n")
         for old, new in changes:
             at = lines.index(old)
-            lines[at:at + 1] = [] if new is None else [new]
+            lines[at : at + 1] = [] if new is None else [new]
         path = self.folder / name
         path.write_text("\n".join(lines))
         return path
@@ -169,7 +179,7 @@ class DraftFile(WifCase):
             with self.subTest(sample.name):
                 head, rest = self.as_text(sample).split("  draft\n")
                 text = self.folder / "same.txt"
-                text.write_text(head + "  draft\n" + "\n".join(Wif(sample).rows) + "\n" + rest[rest.index("  end\n"):])
+                text.write_text(head + "  draft\n" + "\n".join(Wif(sample).rows) + "\n" + rest[rest.index("  end\n") :])
                 files = []
                 for number, source in enumerate((sample, text)):
                     files.append(self.folder / str(number) / "cloth.igs")
@@ -186,11 +196,13 @@ class DraftFile(WifCase):
         (self.folder / "bad.wif").write_text((BAD / "wif_no_tieup.wif").read_text())
         self.cloth("draft file cloth.txt", "again.txt")
         (self.folder / "none.txt").write_text("fabric 1\n")
-        for name, parts in {"missing.wif": ["No such file"],
-                            "bad.wif": ["it has errors", "bad.wif:25:1: error: [TREADLING] needs [TIEUP]"],
-                            "none.txt": ["it has 0 weaves, not one"],
-                            "again.txt": ["its draft stands in a file, too: 'cloth.txt'"],
-                            "-": ["No such file"]}.items():
+        for name, parts in {
+            "missing.wif": ["No such file"],
+            "bad.wif": ["it has errors", "bad.wif:25:1: error: [TREADLING] needs [TIEUP]"],
+            "none.txt": ["it has 0 weaves, not one"],
+            "again.txt": ["its draft stands in a file, too: 'cloth.txt'"],
+            "-": ["No such file"],
+        }.items():
             with self.subTest(name):
                 messages = self.fails(1, "convert", self.cloth(f'draft file "{name}"'), "--to", "txt", "-o", "-")
                 self.assertIn(f"cloth.txt:8:3: error: no draft in the file '{name}': ", messages)
@@ -200,8 +212,10 @@ class DraftFile(WifCase):
 
     def refused_everywhere(self, cloth, reason):
         """By a command that works in a process of its own, and by one that does not."""
-        for arguments in (("info", cloth, "--timeout", "60"),
-                          ("edit", cloth, "--yarn", "warp_1", "--point", "1", "--to", "0,0,0", "-o", self.folder / "edited.txt")):
+        for arguments in (
+            ("info", cloth, "--timeout", "60"),
+            ("edit", cloth, "--yarn", "warp_1", "--point", "1", "--to", "0,0,0", "-o", self.folder / "edited.txt"),
+        ):
             messages = self.fails(1, *arguments, timeout=120)
             self.assertRegex(messages, r"cloth\.txt:8:3: error: no draft in the file '[^\n]*': " + reason)
             self.assertNotRegex(messages, "crash|signal|defect of this program")
@@ -220,9 +234,13 @@ class DraftFile(WifCase):
         for name, outside in (("pipe.wif", False), ("folder.wif", False), ("zero.wif", True), ("/dev/zero", True)):
             with self.subTest(name):
                 cloth = self.cloth(f"draft file {name}")
-                self.refused_everywhere(cloth, "it is neither in this text's folder" if outside else "it is not a regular file")
+                self.refused_everywhere(
+                    cloth, "it is neither in this text's folder" if outside else "it is not a regular file"
+                )
                 if outside:
-                    self.assertIn("it is not a regular file", self.fails(1, "info", cloth, "--allow-outside", timeout=120))
+                    self.assertIn(
+                        "it is not a regular file", self.fails(1, "info", cloth, "--allow-outside", timeout=120)
+                    )
 
     def test_only_files_below_the_text_are_read(self):
         sample = SAMPLES / "wif_herringbone.wif"
@@ -243,15 +261,34 @@ class DraftFile(WifCase):
                 self.assertEqual(done.stdout, inside)
 
     def test_edit_reads_it_too(self):
-        messages = self.fails(1, "edit", self.cloth("draft file missing.wif"), "--yarn", "warp_1", "--point", "1", "--to",
-                              "0,0,0", "-o", self.folder / "edited.txt")
+        messages = self.fails(
+            1,
+            "edit",
+            self.cloth("draft file missing.wif"),
+            "--yarn",
+            "warp_1",
+            "--point",
+            "1",
+            "--to",
+            "0,0,0",
+            "-o",
+            self.folder / "edited.txt",
+        )
         self.assertIn("cloth.txt:8:3: error: no draft in the file 'missing.wif': ", messages)
 
     def test_resume_sees_that_the_file_changed(self):
         draft = self.folder / "draft.wif"
         draft.write_bytes((SAMPLES / "wif_herringbone.wif").read_bytes())
-        arguments = ("convert", self.cloth("draft file draft.wif"), "--to", "txt", "-o", self.out / "cloth.txt", "--report",
-                     self.folder / "report.json")
+        arguments = (
+            "convert",
+            self.cloth("draft file draft.wif"),
+            "--to",
+            "txt",
+            "-o",
+            self.out / "cloth.txt",
+            "--report",
+            self.folder / "report.json",
+        )
         self.succeeds(*arguments)
         first = (self.out / "cloth.txt").read_text()
         draft.write_bytes((SAMPLES / "wif_satin_liftplan.wif").read_bytes())
@@ -261,9 +298,11 @@ class DraftFile(WifCase):
 
 class BadSamples(Case):
     def test_each_is_refused_at_its_place(self):
-        expected = {"wif_no_tieup.wif": "25:1: error: [TREADLING] needs [TIEUP], which is missing",
-                    "wif_shaft_beyond.wif": "27:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
-                    "wif_treadle_beyond.wif": "33:3: error: treadle 9 is beyond the 4 treadles of [WEAVING]"}
+        expected = {
+            "wif_no_tieup.wif": "25:1: error: [TREADLING] needs [TIEUP], which is missing",
+            "wif_shaft_beyond.wif": "27:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
+            "wif_treadle_beyond.wif": "33:3: error: treadle 9 is beyond the 4 treadles of [WEAVING]",
+        }
         self.assertEqual(sorted(path.name for path in BAD.glob("*.wif")), sorted(expected))
         for name, message in expected.items():
             with self.subTest(name):
