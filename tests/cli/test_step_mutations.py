@@ -10,7 +10,7 @@ import signal
 import time
 import unittest
 
-from program import Case, children_of, run, seconds_of, start
+from program import GRID, Case, children_of, run, seconds_of, start
 from step_damage import BASES, Base
 
 COUNT = int(os.environ.get("STEP_MUTATIONS", "100"))
