@@ -32,6 +32,9 @@ constexpr double longest_plateau = 0.35;
 // Degrees; beyond, the braiders of a strip lie on each other at its edges.
 constexpr double steepest_strip = 80.0;
 
+// Of a section, where the gap of crossing yarns is measured.
+constexpr int outline_points = 64;
+
 // For messages: four digits, never less than the value.
 double rounded_up(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
@@ -373,7 +376,7 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
     if (!checked)
       return error(Kind::geometry, fmt::format("thread '{}': {}", of.name, checked.error().text))
           .placed(place);
-    return outline_polygon(*section);
+    return dense_outline_polygon(*section, outline_points);
   };
   const Result<std::vector<Vec2>> outline = outline_of(thread, braid.thread_place);
   if (!outline) return outline.error();

@@ -90,6 +90,21 @@ std::vector<std::int64_t> different_columns(const BraidShape& shape) {
   return columns;
 }
 
+// Between these steps of its way.
+struct Stretch {
+  SweptYarn yarn;
+  double from = 0, to = 0;
+  [[nodiscard]] double middle() const { return 0.5 * (from + to); }
+};
+
+// Points of each against sections of the other: an edge of one shows in the other's flat side only from
+// there.
+double gap_of(const Stretch& a, const Stretch& b, int stations) {
+  const double reach_a = 0.5 * (a.to - a.from) + 0.5, reach_b = 0.5 * (b.to - b.from) + 0.5;
+  return std::min(refined_gap(a.yarn, a.from, a.to, stations, b.yarn, b.middle(), reach_b),
+                  refined_gap(b.yarn, b.from, b.to, stations, a.yarn, a.middle(), reach_a));
+}
+
 // The least gap of all yarns that cross, with the shape's amplitude.
 double crossing_gap(const BraidShape& shape, const std::vector<Vec2>& outline,
                     const std::vector<Vec2>& axial_outline) {
@@ -98,20 +113,19 @@ double crossing_gap(const BraidShape& shape, const std::vector<Vec2>& outline,
   for (const std::int64_t column : different_columns(shape)) {
     const std::array<Braider, 2> pair = braiders_at(shape, column);
     const auto t = static_cast<double>(column);
-    gap = std::min(gap, least_gap(swept(shape, pair[0], outline), t - 1.0, t + 1.0, stations,
-                                  swept(shape, pair[1], outline), t, 1.5));
+    gap = std::min(gap, gap_of({swept(shape, pair[0], outline), t - 1.0, t + 1.0},
+                               {swept(shape, pair[1], outline), t - 1.0, t + 1.0}, stations));
   }
   if (axial_outline.empty()) return gap;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(run_count(shape), 2); ++k) {
     const Run run = run_of(shape, k);
-    const SweptYarn axial = swept_axial(shape, run, axial_outline);
     const std::array<Braider, 2> pair = braiders_at(shape, run.first);
     for (const Braider& braider : pair) {
       const bool forward = &braider == pair.data();
       const auto t = static_cast<double>(run.first), width = static_cast<double>(run.last - run.first);
-      gap =
-          std::min(gap, least_gap(swept(shape, braider, outline), forward ? t - 1.0 : t - width - 1.0,
-                                  forward ? t + width + 1.0 : t + 1.0, 2 * stations, axial, t, 2.0 + width));
+      const double from = forward ? t - 1.0 : t - width - 1.0, to = forward ? t + width + 1.0 : t + 1.0;
+      gap = std::min(gap, gap_of({swept(shape, braider, outline), from, to},
+                                 {swept_axial(shape, run, axial_outline), from, to}, 2 * stations));
     }
   }
   return gap;

@@ -22,8 +22,14 @@ struct SweptYarn {
   std::vector<Vec2> fine{};   // the same with a whole multiple of its points; may be empty
 };
 
-// Points on the outline of a section of its own size, closest where it bends most: 32 times `looks` of them.
+// Points on the outline of a section of its own size, closest where it bends most, with its corners: `looks`
+// of them in each of its spans, which are 32 but for Loop7 (7) and polygons (two a corner).
 std::vector<Vec2> outline_polygon(const yarn::Section& section, int looks = 2);
+// The same with at least `count` points where the outline is curved.
+std::vector<Vec2> dense_outline_polygon(const yarn::Section& section, int count);
+
+// How far the section of its own size reaches from the centre line.
+double outline_reach(const yarn::Section& section);
 
 // Distance of a point from a polygon; negative inside.
 double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p);
@@ -34,5 +40,11 @@ double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p);
 // where the gap is least.
 double least_gap(const SweptYarn& a, double from, double to, int stations, const SweptYarn& b, double near_b,
                  double reach_b);
+
+// The same on the outlines alone, refined along the path between the stations where each point of a's outline
+// is nearest: a corner of a polygon runs along the yarn as an edge, and crosses another edge at one place
+// only.
+double refined_gap(const SweptYarn& a, double from, double to, int stations, const SweptYarn& b,
+                   double near_b, double reach_b);
 
 }  // namespace selvage::fabric

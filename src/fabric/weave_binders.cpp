@@ -39,6 +39,8 @@ long long shift_of_levels(const Binder& binder) {
 }  // namespace
 
 Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
+  if (!as_published_)
+    for (System* system : {&warp_, &weft_}) fill(*system);
   warp_layer_ = warp_.thickest;
   for (int layer = 0; layer <= layers(); ++layer) {
     if (layer < layers()) add_block(Block::Kind::warp, layer, 0, row_of(warp_));
@@ -48,7 +50,7 @@ Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
     const Binder& binder = weave_.binders[set];
     Result<WovenThread> woven = woven_thread(fabric_, binder.thread, binder.place);
     if (!woven) return woven.error();
-    binders_.push_back(std::move(*woven));
+    binders_.push_back(as_published_ ? std::move(*woven) : filled(std::move(*woven)));
     binder_clearances_.push_back(clearance_);
     for (int level : binder.levels) {
       if (level > 0 && level <= layers() && !as_published_)
@@ -110,6 +112,8 @@ double WeaveConstruction::binder_gap_to_wefts(const Block& block) const {
     if (!seen.emplace(heights, threads).second) continue;
     const SweptYarn binder = swept_in_plane(PlanePath::bent(passes[0], passes[1], passes[2]), false, 0.0,
                                             binders_[block.set].section);
+    const bool has_edges = std::holds_alternative<yarn::Polygon>(binders_[block.set].section) ||
+                           std::holds_alternative<yarn::Polygon>(weft_.thread(k).section);
     const int own_level = level_at(weave_.binders[block.set], k);
     // The wefts just below and above; from the others of the column the slopes lead away.
     for (const int layer : {own_level - 1, own_level}) {
@@ -121,6 +125,9 @@ double WeaveConstruction::binder_gap_to_wefts(const Block& block) const {
       const SweptYarn weft =
           swept_in_plane(PlanePath::bent(before, level, after), true, 0.0, weft_.thread(k).section);
       gap = std::min(gap, least_gap(binder, -2.0 * pitch, 2.0 * pitch, stations, weft, 0.0, pitch));
+      if (has_edges)
+        gap = std::min({gap, refined_gap(binder, -2.0 * pitch, 2.0 * pitch, stations, weft, 0.0, pitch),
+                        refined_gap(weft, -pitch, pitch, stations, binder, 0.0, 2.0 * pitch)});
     }
   }
   return gap;
@@ -129,21 +136,28 @@ double WeaveConstruction::binder_gap_to_wefts(const Block& block) const {
 // Wide sections tilt on the slope and come nearer than at the crossing: the bends become wider by that.
 void WeaveConstruction::fit_binder(const Block& block, Diagnostics& diagnostics) {
   double& clearance = binder_clearances_[block.set];
-  const double thickness = binders_[block.set].size.height;
+  const double thickness = binders_[block.set].size.height + weft_.thickest;
+  // The best of what was looked at, for a binder without room.
+  double best = clearance_, best_gap = -std::numeric_limits<double>::infinity();
   const std::optional<double> least =
       least_clearance(clearance_, clearance_ + thickness, [&](double value) -> std::optional<double> {
         clearance = value;
         if (!check_binder(block)) return std::nullopt;
-        return binder_gap_to_wefts(block);
+        const double gap = binder_gap_to_wefts(block);
+        if (gap > best_gap) {
+          best_gap = gap;
+          best = value;
+        }
+        return gap;
       });
-  clearance = least.value_or(clearance_);
+  clearance = least.value_or(best);
   if (least) return;
-  if (const double gap = binder_gap_to_wefts(block); gap <= 0.0)
+  if (best_gap <= 0.0)
     warn(weave_.binders[block.set].place,
          fmt::format(
              "the binder has no room between the wefts and overlaps them, by about {:.2g} {}: a larger "
              "pitch gives it",
-             -gap, name_of(fabric_.units)),
+             -best_gap, name_of(fabric_.units)),
          diagnostics);
 }
 

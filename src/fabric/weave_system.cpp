@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/wrapped.h"
+#include "fabric/clearance.h"
 #include "fabric/quantities.h"
 #include "fabric/repeat.h"
 #include "fabric/yarn_spec.h"
@@ -101,6 +102,23 @@ Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {
   if (Status fits = check_proportion("a pitch", text.pitch, system.widest, fabric.units, text.place); !fits)
     return fits.error();
   return system;
+}
+
+WovenThread filled(WovenThread woven) {
+  if (!std::holds_alternative<yarn::Loop7>(woven.section)) return woven;
+  const double diameter = 2.0 * outline_reach(woven.section);
+  woven.section = yarn::Circle{diameter};
+  woven.size = {diameter, diameter};
+  return woven;
+}
+
+void fill(System& system) {
+  system.thickest = system.widest = 0.0;
+  for (WovenThread& woven : system.threads) {
+    woven = filled(std::move(woven));
+    system.thickest = std::max(system.thickest, woven.size.height);
+    system.widest = std::max(system.widest, woven.size.width);
+  }
 }
 
 std::optional<Bend> natural_bend(const System& crossed) {

@@ -38,6 +38,12 @@ struct System {
 Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place);
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
 
+// With the room that it takes beside straight yarns: that of the circle round a Loop7, which is not quite
+// round.
+WovenThread filled(WovenThread woven);
+// All its threads.
+void fill(System& system);
+
 // Yarns of a system move together under floats and apart where yarns of the other system change sides between
 // them. `changes`: how many do, between yarn i and the next one, over a repeat. Neighbours without any come
 // as near as `closest` (no further apart than the pitch); what that frees the others share, so that the

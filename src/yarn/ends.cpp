@@ -275,14 +275,11 @@ Status complete_end(Body& body, bool last) {
     const Vec3 middle = mean_of(std::span(outline.points).first(outline.points.size() - 1));
     face.origin += (middle - face.origin).dot(face.normal) * face.normal;
   }
-  // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
-  // opposite one.
   if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
-  if (face.style == EndStyle::fan) {
-    const nurbs::SurfaceJet jet =
-        nurbs::evaluate_jet(face.surface, face.surface.first_u(), face.surface.first_v());
-    face.inward = jet.du.cross(jet.dv).dot(face.normal) < 0.0;
-  }
+  // v runs from the rim to the centre: the normal is on the side about which the rim turns. One point does
+  // not show it: at a section's cusp both derivatives have the same direction.
+  if (face.style == EndStyle::fan)
+    face.inward = area_vector(nurbs::boundary_row(face.surface, false)).dot(face.normal) < 0.0;
   return {};
 }
 

@@ -81,8 +81,9 @@ Breaks breaks_of(const CentreLine& path, const FrameField& frames, const SizePro
   std::sort(marks.begin(), marks.end());
   Breaks breaks;
   std::vector<double> ends;
+  // The same place of the path and of the sizes is one end: as the grid has it.
   for (double t : marks)
-    if (ends.empty() || t - ends.back() > 1e-9) ends.push_back(grid.rounded(t));
+    if (const double end = grid.rounded(t); ends.empty() || end - ends.back() > 1e-9) ends.push_back(end);
   ends.back() = 1.0;
   breaks.at = {ends.front()};
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {

@@ -298,8 +298,14 @@ class Refusals(Base):
         """A stranger's report may name any file."""
         secret = self.folder / "secret.txt"
         secret.write_text("confidential words\n")
-        for digest, is_shown in ((None, False), ("0" * 64, False), (hashlib.sha256(secret.read_bytes()).hexdigest(), True)):
-            self.report.write_text(json.dumps({"inputs": [{"path": str(secret), **({"sha256": digest} if digest else {})}]}))
+        for digest, is_shown in (
+            (None, False),
+            ("0" * 64, False),
+            (hashlib.sha256(secret.read_bytes()).hexdigest(), True),
+        ):
+            self.report.write_text(
+                json.dumps({"inputs": [{"path": str(secret), **({"sha256": digest} if digest else {})}]})
+            )
             self.succeeds("report", "html", self.report, "-o", self.folder / "x.html")
             self.assertEqual("confidential" in (self.folder / "x.html").read_text(), is_shown, digest)
 

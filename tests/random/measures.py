@@ -137,11 +137,11 @@ def thread_area(lines):
 # ---- what lies inside what
 
 
-def coarse(grid, around=24, most=160):
-    """Sections of the yarn, about `most` of them at most."""
+def coarse(grid, around=24, most=160, finest=6):
+    """Sections of the yarn, about `most` of them at most, and `finest` in a span."""
     v0, v1 = grid.domain(grid.knots_v, grid.degree_v)
     breaks = np.unique([k for k in grid.knots_v if v0 <= k <= v1])
-    fine = max(2, min(6, most // max(1, len(breaks))))
+    fine = max(2, min(finest, most // max(1, len(breaks))))
     v = np.unique(np.concatenate([np.linspace(a, b, fine + 1) for a, b in zip(breaks, breaks[1:])]))
     return grid.sections_at(v, around)
 

@@ -30,8 +30,6 @@
 #include <filesystem>
 #include <fstream>
 #include <gp_Ax2.hxx>
-#include <math.hxx>
-#include <math_Vector.hxx>
 #include <numbers>
 #include <sstream>
 
@@ -39,6 +37,7 @@
 #include "cad/judge.h"
 #include "fabric/from_cad.h"
 #include "formats/registry.h"
+#include "formats/step/face_flux.h"
 #include "nurbs/measure.h"
 #include "places.h"
 
@@ -104,32 +103,6 @@ struct Facts {
   std::vector<double> volumes;  // of its solids
 };
 
-// A third of the flux of (p - centre) through a face that is a whole B-spline surface, by Gauss's rule in
-// every span on what OpenCASCADE evaluates. (Its own quadratures are off by up to 2e-5 of a knit's volume.)
-// None for other faces.
-std::optional<double> flux_through(const TopoDS_Face& face, const gp_Pnt& centre) {
-  const Handle(Geom_BSplineSurface) surface = Handle(Geom_BSplineSurface)::DownCast(BRep_Tool::Surface(face));
-  if (surface.IsNull()) return std::nullopt;
-  constexpr int nodes = 8;
-  math_Vector at(1, nodes), weight(1, nodes);
-  math::GaussPoints(nodes, at);
-  math::GaussWeights(nodes, weight);
-  double sum = 0.0;
-  for (int i = 1; i < surface->NbUKnots(); ++i)
-    for (int j = 1; j < surface->NbVKnots(); ++j) {
-      const double u0 = surface->UKnot(i), du = 0.5 * (surface->UKnot(i + 1) - u0);
-      const double v0 = surface->VKnot(j), dv = 0.5 * (surface->VKnot(j + 1) - v0);
-      for (int k = 1; k <= nodes; ++k)
-        for (int l = 1; l <= nodes; ++l) {
-          gp_Pnt p;
-          gp_Vec along_u, along_v;
-          surface->D1(u0 + du * (1.0 + at(k)), v0 + dv * (1.0 + at(l)), p, along_u, along_v);
-          sum += du * dv * weight(k) * weight(l) * gp_Vec(centre, p).Dot(along_u.Crossed(along_v));
-        }
-    }
-  return (face.Orientation() == TopAbs_REVERSED ? -sum : sum) / 3.0;
-}
-
 Facts facts_of(const TopoDS_Shape& shape) {
   Facts facts;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) ++facts.faces;
@@ -141,7 +114,7 @@ Facts facts_of(const TopoDS_Shape& shape) {
     BRepGProp::VolumePropertiesGK(it.Current(), properties, 1e-12, false, true);
     double volume = 0.0;
     for (TopExp_Explorer face(it.Current(), TopAbs_FACE); face.More(); face.Next()) {
-      const std::optional<double> flux = flux_through(TopoDS::Face(face.Current()), centre);
+      const std::optional<double> flux = tests::flux_through(TopoDS::Face(face.Current()), centre);
       volume += flux.value_or(0.0);
       if (flux) continue;
       volume = properties.Mass();  // with trimmed planes: its quadrature, span by span

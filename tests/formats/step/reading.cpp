@@ -31,6 +31,8 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <cmath>
 
+#include "face_flux.h"
+
 namespace selvage::tests {
 
 namespace {
@@ -55,6 +57,21 @@ void add_faces(const TopoDS_Shape& shape, ReadPart& part) {
   }
 }
 
+// About a point of the solid, from which little flows in and out that would cancel.
+double volume_of(const TopoDS_Shape& solid) {
+  const gp_Pnt centre = BRep_Tool::Pnt(TopoDS::Vertex(TopExp_Explorer(solid, TopAbs_VERTEX).Current()));
+  double volume = 0.0;
+  for (TopExp_Explorer face(solid, TopAbs_FACE); face.More(); face.Next()) {
+    const std::optional<double> flux = flux_through(TopoDS::Face(face.Current()), centre);
+    volume += flux.value_or(0.0);
+    if (flux) continue;
+    GProp_GProps properties;  // with trimmed planes: its own quadrature
+    BRepGProp::VolumeProperties(solid, properties, 1e-9);
+    return properties.Mass();
+  }
+  return volume;
+}
+
 ReadPart examine(const TopoDS_Shape& shape) {
   ReadPart part;
   part.is_solid = shape.ShapeType() == TopAbs_SOLID;
@@ -68,9 +85,7 @@ ReadPart examine(const TopoDS_Shape& shape) {
   part.tolerance =
       std::max(tolerance.Tolerance(shape, 1, TopAbs_EDGE), tolerance.Tolerance(shape, 1, TopAbs_VERTEX));
   if (part.is_solid) {
-    GProp_GProps properties;
-    BRepGProp::VolumeProperties(shape, properties, 1e-9);
-    part.volume = properties.Mass();
+    part.volume = volume_of(shape);
   }
   add_faces(shape, part);
   return part;

@@ -74,6 +74,20 @@ TEST(EndsTest, NormalsPointOutOfTheYarn) {
   }
 }
 
+// At a cusp the fan's two derivatives have one direction, and their product is rounding.
+TEST(EndsTest, AFanOnASectionWithCuspsIsOriented) {
+  for (const double exponent : {1.2, 1.5, 1.9, 2.0, 2.01, 2.5, 3.0}) {
+    const Section section = Power{0.39, 0.18, exponent};
+    const Body fans = bar(section, {0.39, 0.18}, EndStyle::fan),
+               planes = bar(section, {0.39, 0.18}, EndStyle::planar);
+    EXPECT_NEAR(fans.volume, planes.volume, 1e-9 * planes.volume) << exponent;
+    for (const EndFace* face : {&fans.start, &fans.end}) {
+      const double flux = nurbs::volume_flux(face->surface, Vec3::Zero()) * (face->inward ? -1 : 1);
+      EXPECT_NEAR(flux, fans.end_area * face->origin.dot(face->normal) / 3, 1e-9) << exponent;
+    }
+  }
+}
+
 TEST(EndsTest, AConcaveSectionFoldsThePatchAndGetsAPlaneAndAWarning) {
   // A deep U.
   const Polygon u{{{1, -1}, {1, 1}, {0.8, 1}, {0.8, -0.8}, {-0.8, -0.8}, {-0.8, 1}, {-1, 1}, {-1, -1}}};

@@ -169,6 +169,27 @@ TEST(TubeTest, DenseSamplingConfirmsTheReportedBound) {
   }
 }
 
+// Where rows have sizes, the path and its sizes have knots at the same places: rounded, each is one double
+// knot.
+TEST(TubeTest, KnotsOfSizesAreThoseOfThePath) {
+  PathRows rows;
+  rows.form = PathForm::centripetal;
+  rows.points = {{0, 0.74, 0.1}, {1.67, 0.9, -0.1}, {2.83, 0.9, 0.16}, {4.43, 0.84, 0.05}};
+  const Result<CentreLine> line = make_centre_line(rows);
+  ASSERT_TRUE(line.ok());
+  for (const double tolerance : {2e-3, 3e-3, 5e-3, 7e-3, 9e-3}) {
+    TubeSpec spec = spec_of(Ellipse{}, {0.48, 0.46}, tolerance);
+    spec.grid = DecimalGrid(1e-6);
+    spec.sizes.clear();
+    for (std::size_t k = 0; k < line->parameters.size(); ++k)
+      spec.sizes.push_back({line->parameters[k], {0.48 - 0.03 * static_cast<double>(k), 0.46}, 0.0});
+    const Body body = make(rows, spec);
+    const std::vector<double>& knots = body.surface.knots_v;
+    for (std::size_t k = 4; k + 6 < knots.size(); ++k)
+      EXPECT_GT(knots[k + 2], knots[k]) << tolerance << ' ' << k;
+  }
+}
+
 // Every control point is a text of so many decimals, but for the rows at oblique ends, which stay flat.
 TEST(TubeTest, ControlPointsStandOnTheGrid) {
   PathRows rows = ring(5, 8);
