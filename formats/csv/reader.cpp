@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/csv.h"
 #include "core/number_text.h"
@@ -75,13 +76,16 @@ class Reader {
   std::optional<Measured> read() {
     if (!find_columns()) return std::nullopt;
     for (std::size_t row = 0; row < table_.rows.size() && !report_.is_full(); ++row) read_row(row);
-    if (table_.rows.empty())
-      report_.error({source_.bytes().data(), 1, 1}, "the table has no point: a row each");
+    if (table_.rows.empty()) report_.error(Spot(), "the table has no point: a row each");
     return std::move(measured_);
   }
 
  private:
   static constexpr std::size_t none = ~std::size_t{0};
+  struct Sections {
+    std::set<std::string> all;
+    std::set<std::string>::iterator last;
+  };
   [[nodiscard]] bool has(Which which) const { return at_[which] != none; }
 
   // A column's name without its unit, which is noted.
@@ -182,13 +186,14 @@ class Reader {
   // The outline that a point belongs to; those of a yarn stand one after the other.
   void take_section(std::size_t row, MeasuredYarn& of, std::size_t number) {
     const std::string& id = table_.rows[row][at_[section]];
-    std::vector<std::string>& seen = sections_[number];
-    if (!seen.empty() && seen.back() == id) return;
-    if (std::find(seen.begin(), seen.end(), id) != seen.end())
+    Sections& seen = sections_[number];
+    if (!seen.all.empty() && *seen.last == id) return;
+    const auto [place, is_new] = seen.all.insert(id);
+    if (!is_new)
       refuse(row, section,
              fmt::format("section {} has points further up: the rows of a section stand together",
                          in_quotes(id)));
-    seen.push_back(id);
+    seen.last = place;
     of.sections.push_back(of.points.size());
   }
 
@@ -239,8 +244,8 @@ class Reader {
   const CsvTable& table_;
   std::array<std::size_t, columns.size()> at_{};  // of each column in the table
   Measured measured_;
-  std::map<std::string, std::size_t> numbers_;  // of the yarns, by name
-  std::map<std::size_t, std::vector<std::string>> sections_;
+  std::map<std::string, std::size_t> numbers_;              // of the yarns, by name
+  std::map<std::size_t, Sections> sections_;                // of each yarn
   std::vector<std::array<std::optional<double>, 2>> last_;  // point and parameter of each yarn
   bool good_ = true;
 };

@@ -69,9 +69,12 @@ Type type_of(long number) {
   }
 }
 
+constexpr int most_components = 64;
+
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : report_(report), lines_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report)
+      : report_(report), lines_(source.bytes()), size_(source.bytes().size()) {}
 
   std::optional<FieldMesh> read() {
     while (lines_.next()) {
@@ -134,6 +137,7 @@ class Reader {
   }
 
   bool read_nodes() {
+    if (!mesh_.fields.empty()) return fail(0, "nodes behind results, which have a value for each node");
     const std::optional<std::size_t> width = width_of_numbers(columns(lines_.line(), 73, 2));
     if (!width) return false;
     while (lines_.next() && columns(lines_.line(), 0, 3) != " -3") {
@@ -228,41 +232,63 @@ class Reader {
     const std::optional<std::size_t> width = width_of_numbers(columns(lines_.line(), 73, 2));
     if (!width) return false;
     const int set = set_of(whole(columns(lines_.line(), 58, 5)).value_or(1));
-    std::string name;
-    std::size_t count = 0;  // of components that are not reckoned from others, which come first
     FieldMesh::Field field;
+    field.step = set;
+    field.components = 0;
     while (lines_.next() && columns(lines_.line(), 0, 3) != " -3") {
       const std::string_view key = columns(lines_.line(), 0, 3);
-      if (key == " -4") {
-        name = std::string(trimmed(columns(lines_.line(), 5, 8)));
-      } else if (key == " -5") {
-        if (!trimmed(columns(lines_.line(), 33, 5)).starts_with('1')) ++count;
-      } else if (key == " -1") {
-        const std::optional<long> number = whole(columns(lines_.line(), 3, *width));
-        const auto node = number ? nodes_.find(*number) : nodes_.end();
-        if (node == nodes_.end()) return fail(3, "values of a node that is not there");
-        if (field.values.empty())
-          field.values.resize(count * mesh_.nodes.size(), std::numeric_limits<float>::quiet_NaN());
-        for (std::size_t k = 0; k < count; ++k) {
-          // Six a line; others follow in lines of their own.
-          if (k > 0 && k % 6 == 0 && !(lines_.next() && columns(lines_.line(), 0, 3) == " -2"))
-            return fail(0, "more values of this node are expected here");
-          const std::optional<double> value = real(3 + *width + 12 * (k % 6), 12);
-          if (!value) return false;
-          field.values[node->second * count + k] = static_cast<float>(*value);
-        }
-      }
+      if (key == " -1" && !read_values(field, *width)) return false;
+      if ((key == " -4" || key == " -5") && !read_layout(field, key == " -4")) return false;
     }
-    if (field.values.empty()) return true;
-    field.name = name;
-    field.step = set;
-    field.components = static_cast<int>(count);
-    mesh_.fields.push_back(std::move(field));
+    if (!field.values.empty()) mesh_.fields.push_back(std::move(field));
     return true;
   }
 
+  // The name of a result, or one of its components. Those that are computed from others come last and have no
+  // values.
+  bool read_layout(FieldMesh::Field& field, bool is_name) {
+    if (!field.values.empty())
+      return fail(0, "the components of a result stand before the values of its first node");
+    if (is_name) field.name = std::string(trimmed(columns(lines_.line(), 5, 8)));
+    if (is_name || trimmed(columns(lines_.line(), 33, 5)).starts_with('1')) return true;
+    if (++field.components <= most_components) return true;
+    return fail(0, fmt::format("a result has at most {} components", most_components), Kind::limit);
+  }
+
+  // Those of the node of this line. Nodes without a line have NaN.
+  bool read_values(FieldMesh::Field& field, std::size_t width) {
+    const std::optional<long> number = whole(columns(lines_.line(), 3, width));
+    const auto node = number ? nodes_.find(*number) : nodes_.end();
+    if (node == nodes_.end()) return fail(3, "values of a node that is not there");
+    const auto count = static_cast<std::size_t>(field.components);
+    if (field.values.empty()) {
+      values_ += count * mesh_.nodes.size();
+      if (values_ > most_values())
+        return fail(0,
+                    fmt::format("results of few of many nodes: with a value for each node they are {}, and a "
+                                "file of this size may have {}; let the solver write results of all nodes",
+                                values_, most_values()),
+                    Kind::limit);
+      field.values.resize(count * mesh_.nodes.size(), std::numeric_limits<float>::quiet_NaN());
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      // Six a line; others follow in lines of their own.
+      if (k > 0 && k % 6 == 0 && !(lines_.next() && columns(lines_.line(), 0, 3) == " -2"))
+        return fail(0, "more values of this node are expected here");
+      const std::optional<double> value = real(3 + width + 12 * (k % 6), 12);
+      if (!value) return false;
+      field.values[node->second * count + k] = static_cast<float>(*value);
+    }
+    return true;
+  }
+
+  // Twelve bytes a value are usual.
+  [[nodiscard]] std::size_t most_values() const { return 1'000'000 + 8 * size_; }
+
   TextReport& report_;
   TextLines lines_;
+  std::size_t size_;        // of the file, bytes
+  std::size_t values_ = 0;  // of all fields
   std::unordered_map<long, std::uint32_t> nodes_;
   std::map<long, std::uint32_t> region_of_;
   std::map<long, std::string> materials_;

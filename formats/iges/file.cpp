@@ -80,10 +80,12 @@ class Fields {
       fault(15, fmt::format("type {} has no form {}", entry_.type, entry_.form));
   }
 
-  [[nodiscard]] std::string_view text(int field) const { return {spot(field).at, 8}; }
-  [[nodiscard]] Spot spot(int field) const {
-    return (field > 10 ? second_ : first_).spot(8 * ((field - 1) % 10) + 1);
+  [[nodiscard]] const Line& line(int field) const { return field > 10 ? second_ : first_; }
+  [[nodiscard]] static int before(int field) { return 8 * ((field - 1) % 10); }  // columns
+  [[nodiscard]] std::string_view text(int field) const {
+    return line(field).text().substr(static_cast<std::size_t>(before(field)), 8);
   }
+  [[nodiscard]] Spot spot(int field) const { return line(field).spot(before(field) + 1); }
   int integer(int field) {
     const std::optional<int> value = column_number(text(field));
     if (!value) fault(field, fmt::format("{} is no integer", in_quotes(text(field))));

@@ -57,7 +57,7 @@ void check_characters(std::string_view text, const Line& line, Complaints& compl
 // What this is instead of fixed-length ASCII. False: a reader stops here.
 bool check_form(std::string_view bytes, Complaints& complaints) {
   const auto other = [&](std::string text, Kind kind = Kind::unsupported) {
-    return complaints.fault({bytes.data(), 1, 1}, std::move(text), kind);
+    return complaints.fault(Spot(), std::move(text), kind);
   };
   const std::string_view head = bytes.substr(0, bytes.find_first_of("\r\n"));
   if (head.size() > letter_column && head[letter_column] == 'C' && is_number_field(head.substr(73, 7)))
@@ -217,18 +217,19 @@ bool Lines::find_stride(bool is_check) {
   bytes_ = bytes;
   stride_ = stride;
   ranges_ = ranges;
-  end_ = {bytes.data() + size, static_cast<int>(count), static_cast<int>(columns) + 1};
+  end_ = {size, static_cast<int>(count), static_cast<int>(columns) + 1};
   return true;
 }
 
 bool Lines::index_regular(Complaints& complaints) {
   if (stride_ == columns)
-    complaints.defect({bytes_.data() + columns, 1, static_cast<int>(columns) + 1},
+    complaints.defect(Spot().behind(columns),
                       "the lines have no ends: they follow each other every 80 columns");
   Order order(complaints);
   const char* at = bytes_.data();
   for (int i = 1; i <= end_.line; ++i, at += stride_) {
-    const Line line{at, static_cast<int>(columns), 72, i};
+    const auto offset = static_cast<std::size_t>(at - bytes_.data());
+    const Line line{at, offset, static_cast<int>(columns), 72, i};
     if (complaints.is_check()) check_characters(line.text(), line, complaints);
     if (!order.add(at + letter_column, 73, line)) return false;
   }
@@ -276,7 +277,8 @@ bool Lines::index_irregular(Complaints& complaints) {
     if (dos) text.remove_suffix(1);
     if (newline != std::string_view::npos) ++ends[dos ? 1 : 0];
     const std::string_view trimmed = without_trailing_blanks(text);
-    Line line{text.data(), static_cast<int>(std::min<std::size_t>(trimmed.size(), 1'000'000)), 72, ++number};
+    Line line{text.data(), static_cast<std::size_t>(text.data() - bytes_.data()),
+              static_cast<int>(std::min<std::size_t>(trimmed.size(), 1'000'000)), 72, ++number};
     end_ = line.spot(line.length + 1);
     if (number > static_cast<int>(section_count) * most_lines) {
       complaints.fault(line.spot(), "the file has more lines than IGES can number");
@@ -309,7 +311,7 @@ bool Lines::index_irregular(Complaints& complaints) {
       return false;
   }
   if (ends[0] > 0 && ends[1] > 0)
-    complaints.warning({nullptr, 0, 0}, fmt::format("{} lines end with CR LF, {} with LF", ends[1], ends[0]));
+    complaints.warning({0, 0, 0}, fmt::format("{} lines end with CR LF, {} with LF", ends[1], ends[0]));
   return true;
 }
 
@@ -347,7 +349,6 @@ void Lines::check_sections(Complaints& complaints) const {
 std::optional<Lines> Lines::index(const Source& source, Complaints& complaints) {
   Lines lines;
   const std::string_view bytes = source.bytes();
-  lines.end_ = {bytes.data(), 1, 1};
   const std::size_t last = bytes.find_last_not_of(std::string_view(" \t\r\n\v\f\0\x1A", 8));
   if (last == std::string_view::npos) {
     complaints.fault(lines.end_, "the file is empty");

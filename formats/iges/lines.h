@@ -2,6 +2,7 @@
 // each line has its letter in column 73 and its number within the section in columns 74-80.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -23,6 +24,7 @@ inline constexpr std::array<std::string_view, section_count> section_names = {"s
 // One line of the file, without its line end. The data of a parameter line are columns 1-64, else 1-72.
 struct Line {
   const char* at = nullptr;  // column 1
+  std::size_t offset = 0;    // the same, in Source::bytes()
   int length = 0;            // all columns that are there
   int data = 0;              // of them, those that hold data
   int number = 0;            // in the file, from 1
@@ -30,7 +32,9 @@ struct Line {
 
   [[nodiscard]] std::string_view text() const { return {at, static_cast<std::size_t>(length)}; }
   // `column` from 1.
-  [[nodiscard]] Spot spot(int column = 1) const { return {at + column - 1, number, column}; }
+  [[nodiscard]] Spot spot(int column = 1) const {
+    return Spot{offset, number, 1}.behind(static_cast<std::size_t>(std::max(column, 1)) - 1);
+  }
 };
 
 class Lines {
@@ -50,8 +54,8 @@ class Lines {
     const auto of_section = static_cast<std::size_t>(section);
     if (stride_ == 0) return irregular_[of_section][static_cast<std::size_t>(number) - 1];
     const int at = ranges_[of_section].first + number - 1;
-    return {bytes_.data() + static_cast<std::size_t>(at) * stride_, 80,
-            section == Section::parameter ? 64 : 72, at + 1};
+    const std::size_t offset = static_cast<std::size_t>(at) * stride_;
+    return {bytes_.data() + offset, offset, 80, section == Section::parameter ? 64 : 72, at + 1};
   }
   // Where the file ends.
   [[nodiscard]] Spot end() const { return end_; }

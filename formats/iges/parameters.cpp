@@ -62,7 +62,7 @@ Parameters::Parameters(const Lines& lines, Section section, int first, int last,
 }
 
 Spot Parameters::here() const {
-  return {at_, line().number, static_cast<int>(at_ - start_) + 1};
+  return line().spot(static_cast<int>(at_ - start_) + 1);
 }
 
 void Parameters::enter(int number) {
@@ -242,6 +242,7 @@ std::string Parameters::string_here() {
     if (length < 100'000'000) length = 10 * length + static_cast<std::size_t>(*at_ - '0');
     ++at_;
   }
+  has_small_letter_ = *at_ == 'h';
   ++at_;
   const Parameters begin = *this;
   std::string value;
@@ -368,7 +369,7 @@ Values::Values(Parameters in) {
       value.text = trimmed(kept_.front());
     }
     value.spot = end_ = in.spot();
-    value.is_small = value.is_string && *std::find_if_not(value.spot.at, value.spot.at + 64, is_digit) == 'h';
+    value.is_small = value.is_string && in.has_small_letter();
     values_.push_back(value);
   }
   failure_ = in.failure();

@@ -86,6 +86,8 @@ class Parameters {
   // Where the value read last began, and the line (number in the section) on which the next one begins.
   [[nodiscard]] Spot spot() const { return value_spot_; }
   [[nodiscard]] int at_line() const { return line_; }
+  // Had the string read last an h instead of an H?
+  [[nodiscard]] bool has_small_letter() const { return has_small_letter_; }
 
  private:
   friend bool read_delimiters(Parameters& cursor);
@@ -114,7 +116,7 @@ class Parameters {
   const char* at_ = nullptr;
   const char* end_ = nullptr;    // of the data on the present line
   const char* start_ = nullptr;  // of the present line
-  bool done_ = false;
+  bool done_ = false, has_small_letter_ = false;
   Spot value_spot_;
   std::optional<Failure> failure_, flaw_;
 };

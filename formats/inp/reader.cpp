@@ -92,7 +92,8 @@ struct SectionCard {
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : report_(report), lines_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report)
+      : report_(report), lines_(source.bytes()), room_(1'000'000 + 8 * source.bytes().size()) {}
 
   std::optional<SolvedDeck> read() {
     while (lines_.next()) {
@@ -182,6 +183,7 @@ class Reader {
   bool take_element() {
     const auto values = numbers(lines_.line());
     if (!values) return false;
+    if (pending_.empty()) pending_spot_ = spot();
     pending_.insert(pending_.end(), values->begin(), values->end());
     if (pending_.size() < nodes_ + 1) return true;
     SolvedDeck::Element element;
@@ -193,6 +195,7 @@ class Reader {
     if (is_new) deck_.regions.push_back(card_.value("ELSET"));
     element.region = known->second;
     deck_.elements[number] = std::move(element);
+    without_section_[number] = pending_spot_;
     sets_[set].push_back(number);
     pending_.clear();
     return true;
@@ -206,8 +209,15 @@ class Reader {
       if (range->size() < 2) return fail(spot(), "a first and a last number are expected here");
       const long first = number_of((*range)[0]), last = number_of((*range)[1]),
                  step = range->size() > 2 ? std::max(1L, number_of((*range)[2])) : 1;
-      for (const auto& [number, element] : deck_.elements)
-        if (number >= first && number <= last && (number - first) % step == 0) set.push_back(number);
+      if (last < first) return true;
+      const auto count = static_cast<std::size_t>((last - first) / step) + 1;
+      if (!take_room(std::min(count, deck_.elements.size()))) return false;
+      if (count <= deck_.elements.size()) {
+        for (long number = first; number <= last; number += step) set.push_back(number);
+      } else {
+        for (const auto& [number, element] : deck_.elements)
+          if (number >= first && number <= last && (number - first) % step == 0) set.push_back(number);
+      }
       return true;
     }
     for (const std::string_view part : split(lines_.line(), ',')) {
@@ -216,12 +226,23 @@ class Reader {
       if (const std::optional<double> number = read_number(word))
         set.push_back(number_of(*number));
       else if (const auto other = sets_.find(key_of(word)); other != sets_.end() && &other->second != &set) {
+        if (!take_room(other->second.size())) return false;
         set.insert(set.end(), other->second.begin(), other->second.end());
-        std::sort(set.begin(), set.end());
-        set.erase(std::unique(set.begin(), set.end()), set.end());
       }
     }
     return true;
+  }
+
+  // Sets may be of other sets: their numbers are counted, here and where a section takes them.
+  bool take_room(std::size_t numbers) {
+    if (numbers <= room_) {
+      room_ -= numbers;
+      return true;
+    }
+    return fail(spot(),
+                "the sets of this deck have far more numbers than a deck of its size has elements: leave out "
+                "sets that repeat others",
+                Kind::limit);
   }
 
   bool take_law() {
@@ -310,18 +331,18 @@ class Reader {
       const auto number = static_cast<std::uint32_t>(deck_.sections.size());
       deck_.sections.push_back(
           {!card.orientation.empty(), material->second.stiffness, material->second.expansion});
+      if (!take_room(set->second.size())) return false;
       for (const long one : set->second) {
         const auto element = deck_.elements.find(one);
         if (element == deck_.elements.end()) continue;
         element->second.section = number;
-        taken_[one] = true;
+        without_section_.erase(one);
         if (!card.orientation.empty() && !orient(card, one, element->second)) return false;
       }
     }
-    for (const auto& [number, element] : deck_.elements)
-      if (!taken_.contains(number))
-        return fail({nullptr, 0, 0}, fmt::format("element {} has no solid section", number));
-    return true;
+    if (without_section_.empty()) return true;
+    const auto& [number, spot] = *without_section_.begin();
+    return fail(spot, fmt::format("element {} has no solid section", number));
   }
 
   bool orient(const SectionCard& card, long number, SolvedDeck::Element& element) {
@@ -347,13 +368,14 @@ class Reader {
 
   TextReport& report_;
   TextLines lines_;
+  std::size_t room_;  // for numbers of sets
   std::string_view comment_;
   Card card_;
   bool is_first_ = false;  // no line of data of this card was read
   std::string material_;
   std::size_t nodes_ = 0;
   std::vector<double> pending_, elastic_;
-  Spot elastic_spot_{};
+  Spot pending_spot_, elastic_spot_;
   double initial_ = 0, last_ = 0;
   std::map<std::string, std::vector<long>> sets_;
   std::map<std::string, std::uint32_t> region_of_;
@@ -361,7 +383,7 @@ class Reader {
   std::map<std::string, std::map<long, Axes>> distributions_;
   std::map<std::string, std::pair<std::string, Axes>> orientations_;
   std::vector<SectionCard> sections_;
-  std::map<long, bool> taken_;
+  std::map<long, Spot> without_section_;  // elements, and where each stands
   SolvedDeck deck_;
 };
 

@@ -71,10 +71,13 @@ bool Charter::find_size() {
   first_column_ = first;
   wales_ = last - first + 1;
   const long long rows = static_cast<long long>(passes_.courses) * passes_.feeds;
-  if (rows * wales_ <= most_cells) return true;
+  const auto loops = static_cast<long long>(graph_.loops.size());
+  const long long most = std::min(most_cells, free_cells + cells_a_loop * loops);
+  if (rows * wales_ <= most) return true;
   report_.error(
       graph_.loops.front().spot,
-      fmt::format("{} rows by {} wales are beyond the {} stitches of a chart", rows, wales_, most_cells),
+      fmt::format("{} rows by {} wales are beyond the {} stitches that the chart of {} loops may have", rows,
+                  wales_, most, loops),
       Kind::limit);
   return false;
 }

@@ -11,8 +11,9 @@
 
 namespace selvage::formats::knitout {
 
-// A chart as large as what is read at most, rows x wales.
-inline constexpr long long most_cells = 20'000'000;
+// A chart as large as what is read at most, rows x wales: where a row of many wales has few loops, all others
+// are stitches without one.
+inline constexpr long long most_cells = 20'000'000, free_cells = 2'000'000, cells_a_loop = 100;
 
 struct GraphChart {
   fabric::Knit knit;          // chart, moves, gating, feeds, courses, wales: what follows from the graph

@@ -35,7 +35,7 @@ bool is_knitout(std::string_view head) {
 }
 
 bool read_first_line(std::string_view line, TextReport& report) {
-  const Spot spot{line.data(), 1, 1};
+  const Spot spot;
   if (!is_knitout(line)) {
     report.error(spot, "this is no knitout program: its first line is not ';!knitout-2'");
     return false;
@@ -52,13 +52,13 @@ bool read_first_line(std::string_view line, TextReport& report) {
   return true;
 }
 
-void read_header_line(std::string_view line, int number, Header& header, TextReport& report) {
+void read_header_line(std::string_view line, const Spot& begin, Header& header, TextReport& report) {
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos) return;
   const std::string_view name = line.substr(2, colon - 2);
   std::string_view rest = line.substr(colon + 1);
   const std::string_view all = rest;
-  std::optional<Carrier> word = next_word(rest, line, number);
+  std::optional<Carrier> word = next_word(rest, line, begin);
   constexpr std::string_view yarn = "Yarn-";
   if (same_word(name, "Gauge") && word) read_gauge(*word, header, report);
   if (name.starts_with(yarn) && word)
@@ -66,7 +66,11 @@ void read_header_line(std::string_view line, int number, Header& header, TextRep
         all.substr(static_cast<std::size_t>(word->name.data() - all.data())), word->spot};
   if (!same_word(name, "Carriers")) return;
   header.has_carriers = true;
-  for (; word; word = next_word(rest, line, number)) {
+  for (; word; word = next_word(rest, line, begin)) {
+    if (header.carriers.size() == most_carriers) {
+      report.error(word->spot, fmt::format("a machine has at most {} carriers", most_carriers), Kind::limit);
+      return;
+    }
     if (std::find(header.carriers.begin(), header.carriers.end(), word->name) != header.carriers.end())
       report.error(word->spot, fmt::format("carrier {} is named twice", in_quotes(word->name)));
     else

@@ -31,6 +31,6 @@ bool read_first_line(std::string_view line, TextReport& report);
 
 // A comment line that begins with `;;`, `NAME: VALUE`; others mean nothing. Errors: a gauge that is none, a
 // carrier twice.
-void read_header_line(std::string_view line, int number, Header& header, TextReport& report);
+void read_header_line(std::string_view line, const Spot& begin, Header& header, TextReport& report);
 
 }  // namespace selvage::formats::knitout

@@ -41,6 +41,10 @@ Station Machine::station(const Needle& needle) const {
 int Machine::carrier(const Carrier& named) {
   const auto found = carrier_numbers_.find(named.name);
   if (found != carrier_numbers_.end()) return found->second;
+  if (!header_.has_carriers && graph_.carriers.size() == most_carriers) {
+    report_.error(named.spot, fmt::format("a machine has at most {} carriers", most_carriers), Kind::limit);
+    return -1;
+  }
   if (!header_.has_carriers) {  // any name is one
     const int number = static_cast<int>(graph_.carriers.size());
     graph_.carriers.emplace_back(named.name);
@@ -164,21 +168,49 @@ void Machine::rack(const Operation& operation) {
 
 // Of loops on the front bed and loops on the back bed that the racking moved past them, who is before whom.
 // Only loops that are on their way somewhere: all others are parted by their beds anyway.
-void Machine::note_passings() {
+void Machine::note_passings(const Spot& spot) {
   if (least_swept_ < most_swept_) {
     for (const int number : back_needles_) {
       const Stack& behind = stack({Bed::back, false, number});
       const int first = number + static_cast<int>(std::floor(least_swept_)),
                 last = number + static_cast<int>(std::ceil(most_swept_));
-      for (int f = std::max(first, -most_number); f <= std::min(last, most_number); ++f)
-        for (const int front : stack({Bed::front, false, f}))
+      for (int f = std::max(first, -most_number); f <= std::min(last, most_number); ++f) {
+        const Stack& before = stack({Bed::front, false, f});
+        passed_ += 1 + before.size() * behind.size();
+        for (const int front : before)
           for (const int back : behind)
             if (graph_.loops[static_cast<std::size_t>(front)].was_moved ||
                 graph_.loops[static_cast<std::size_t>(back)].was_moved)
               graph_.passings[std::minmax(front, back)] = front < back;
+      }
+      if (passes_too_much(spot)) break;
     }
   }
   least_swept_ = most_swept_ = racking_;
+}
+
+// Far more than where each loop of a cloth is moved past its neighbours, some needles at a time.
+bool Machine::passes_too_much(const Spot& spot) {
+  const std::size_t loops = graph_.loops.size();
+  if (passed_ <= 100'000'000 + 1000 * loops && graph_.passings.size() <= 1'000'000 + 50 * loops) return false;
+  report_.error(
+      spot,
+      fmt::format("the racked beds have moved loops past each other {} times, with {} loops in all: rack "
+                  "less far, or while fewer needles hold loops",
+                  std::max(passed_, graph_.passings.size()), loops),
+      Kind::limit);
+  graph_.passings.clear();
+  return true;
+}
+
+bool Machine::can_hold(std::size_t loops, const Needle& needle, const Spot& spot) {
+  if (loops <= most_held) return true;
+  report_.error(
+      spot,
+      fmt::format("{} would hold {} loops, and a needle holds at most {}: knit them off, or drop them",
+                  name_of(needle), loops, most_held),
+      Kind::limit);
+  return false;
 }
 
 std::uint32_t Machine::set_number() {
@@ -196,7 +228,9 @@ void Machine::hold(const Needle& needle) {
 void Machine::make_loop(const Operation& operation, bool is_tuck) {
   if (!takes_yarn(operation) || !is_on_bed(operation.needle, operation.needle_spot)) return;
   if (!find_carriers(operation) || !all_in(operation)) return;
-  note_passings();
+  if (is_tuck && !can_hold(stack(operation.needle).size() + 1, operation.needle, operation.needle_spot))
+    return;
+  note_passings(operation.spot);
   for (const auto& [spot, needle] : ladders_)
     report_.warning(spot,
                     fmt::format("the loop dropped from {} runs: it holds the loops below it, which stay as "
@@ -268,7 +302,8 @@ void Machine::transfer(const Operation& operation, bool splits) {
             : fmt::format("no needles face each other at racking {}: rack a whole number", racking_));
     return;
   }
-  note_passings();
+  if (!can_hold(stack(from).size() + stack(to).size(), to, operation.other_spot)) return;
+  note_passings(operation.spot);
   if (splits && (!takes_yarn(operation) || !find_carriers(operation) || !all_in(operation))) return;
   Stack moved = std::move(stack(from));
   stack(from).clear();

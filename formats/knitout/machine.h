@@ -54,7 +54,9 @@ class Machine {
   void make_loop(const Operation& operation, bool is_tuck);
   void drop(const Operation& operation);
   void transfer(const Operation& operation, bool splits);
-  void note_passings();
+  void note_passings(const Spot& spot);
+  bool passes_too_much(const Spot& spot);
+  bool can_hold(std::size_t loops, const Needle& needle, const Spot& spot);
   std::uint32_t set_number();
   void hold(const Needle& needle);  // after a change of its stack
 
@@ -69,6 +71,7 @@ class Machine {
   std::set<int> back_needles_;                // that hold something
   double racking_ = 0, whole_ = 0;
   double least_swept_ = 0, most_swept_ = 0;       // rackings since loops were looked at
+  std::size_t passed_ = 0;                        // needles and loops that were looked at
   std::vector<std::pair<Spot, Needle>> ladders_;  // dropped since the last loop was made
   int least_used_ = most_number + 1, most_used_ = -most_number - 1;
 };

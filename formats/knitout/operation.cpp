@@ -50,11 +50,11 @@ std::vector<std::string_view> all_words() {
 
 class Line {
  public:
-  Line(std::string_view line, int number, TextReport& report)
-      : line_(line), rest_(line), number_(number), report_(report) {}
+  Line(std::string_view line, const Spot& begin, TextReport& report)
+      : line_(line), rest_(line), begin_(begin), report_(report) {}
 
   std::optional<Carrier> word() {
-    std::optional<Carrier> next = next_word(rest_, line_, number_);
+    std::optional<Carrier> next = next_word(rest_, line_, begin_);
     if (next) last_ = next->spot;
     return next;
   }
@@ -75,11 +75,11 @@ class Line {
   [[nodiscard]] Spot end() const {
     std::size_t size = line_.size();
     while (size > 0 && (line_[size - 1] == ' ' || line_[size - 1] == '\t' || line_[size - 1] == '\r')) --size;
-    return {line_.data() + size, number_, static_cast<int>(size) + 1};
+    return begin_.behind(size);
   }
 
   std::string_view line_, rest_;
-  int number_;
+  Spot begin_;
   TextReport& report_;
   Spot last_;
 };
@@ -128,20 +128,19 @@ std::optional<double> Line::number(const Form& form) {
 
 }  // namespace
 
-std::optional<Carrier> next_word(std::string_view& rest, std::string_view line, int number) {
+std::optional<Carrier> next_word(std::string_view& rest, std::string_view line, const Spot& begin) {
   constexpr std::string_view blanks = " \t\r";
   const std::size_t start = rest.find_first_not_of(blanks);
   if (start == std::string_view::npos) return std::nullopt;
   rest.remove_prefix(start);
   const std::size_t length = std::min(rest.find_first_of(blanks), rest.size());
-  Carrier word{rest.substr(0, length),
-               {rest.data(), number, static_cast<int>(rest.data() - line.data()) + 1}};
+  Carrier word{rest.substr(0, length), begin.behind(static_cast<std::size_t>(rest.data() - line.data()))};
   rest.remove_prefix(length);
   return word;
 }
 
-bool read_operation(std::string_view line, int number, Operation& operation, TextReport& report) {
-  Line words(line, number, report);
+bool read_operation(std::string_view line, const Spot& begin, Operation& operation, TextReport& report) {
+  Line words(line, begin, report);
   const std::optional<Carrier> first = words.word();
   if (!first) return false;
   operation.word = first->name;

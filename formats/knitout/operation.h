@@ -1,6 +1,7 @@
 // One line of a knitout program: an operation and its operands, as written.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@ namespace selvage::formats::knitout {
 // Needle numbers go so far to both sides, and all that a program uses lie on a bed of this width: the widest
 // machines have 84 inches at gauge 14.
 inline constexpr int most_number = 9999, widest_bed = 1200;
+// Far more than machines have carriers, and than a needle's hook can hold loops.
+inline constexpr std::size_t most_carriers = 1000, most_held = 32;
 
 enum class Verb {
   in,
@@ -51,9 +54,9 @@ struct Operation {
 
 // The operation of a line without its comment; nothing where there is none, or an error, which is reported.
 // `operation` is filled anew; its room is kept.
-bool read_operation(std::string_view line, int number, Operation& operation, TextReport& report);
+bool read_operation(std::string_view line, const Spot& begin, Operation& operation, TextReport& report);
 
-// The words of a line, at blanks and tabs, each where it stands.
-std::optional<Carrier> next_word(std::string_view& rest, std::string_view line, int number);
+// The words of a line that stands at `begin`, at blanks and tabs, each where it stands.
+std::optional<Carrier> next_word(std::string_view& rest, std::string_view line, const Spot& begin);
 
 }  // namespace selvage::formats::knitout

@@ -16,9 +16,9 @@ class Runner {
  public:
   Runner(Program& program, TextReport& report) : program_(program), report_(report) {}
 
-  void line(std::string_view line, int number) {
-    if (!machine_ && line.starts_with(";;")) return read_header_line(line, number, program_.header, report_);
-    if (!read_operation(line.substr(0, line.find(';')), number, operation_, report_)) return;
+  void line(std::string_view line, const Spot& begin) {
+    if (!machine_ && line.starts_with(";;")) return read_header_line(line, begin, program_.header, report_);
+    if (!read_operation(line.substr(0, line.find(';')), begin, operation_, report_)) return;
     if (!machine_) machine_.emplace(program_.header, report_);
     if (operation_.verb == Verb::extension && extensions_.insert(operation_.word).second)
       report_.warning(operation_.spot, fmt::format("the extension {} is passed by, here and below",
@@ -47,7 +47,7 @@ std::optional<Program> run_program(const Source& source, TextReport& report) {
   if (!read_first_line(lines.line(), report)) return std::nullopt;
   Program program;
   Runner runner(program, report);
-  while (!report.is_full() && lines.next()) runner.line(lines.line(), lines.number());
+  while (!report.is_full() && lines.next()) runner.line(lines.line(), lines.spot());
   runner.finish();
   return program;
 }

@@ -11,8 +11,7 @@ namespace {
 std::optional<fabric::Fabric> read(const Source& source, TextReport& report) {
   const std::optional<Program> program = run_program(source, report);
   if (!program || report.errors() > 0) return std::nullopt;
-  if (program->graph.loops.empty())
-    return report.error(Spot{source.bytes().data(), 1, 1}, "this program knits no loop");
+  if (program->graph.loops.empty()) return report.error(Spot(), "this program knits no loop");
   std::optional<GraphChart> chart = chart_of(program->graph, report);
   if (!chart) return std::nullopt;
   fabric::Fabric fabric;

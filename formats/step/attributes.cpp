@@ -49,7 +49,8 @@ bool decorates(std::string_view type) {
 // The attributes of one statement after the other. The grammar has been checked: what is a list here ends.
 class Checker {
  public:
-  Checker(Part21& file, const char* end, TextReport& report) : file_(file), end_(end), report_(report) {
+  Checker(Part21& file, std::string_view text, TextReport& report)
+      : file_(file), text_(text), report_(report) {
     for (const std::string& type : file.types) facts_.push_back(facts_of(type));
   }
 
@@ -61,8 +62,7 @@ class Checker {
 
  private:
   void check(Statement& statement) {
-    const char* const at = statement.spot.at;
-    lexer_ = Lexer({at, static_cast<std::size_t>(end_ - at)}, statement.spot);
+    lexer_ = Lexer(text_, statement.spot);
     statement_ = &statement;
     next_reference_ = statement.first_ref;
     try {
@@ -214,7 +214,7 @@ class Checker {
   }
 
   Part21& file_;
-  const char* end_;
+  std::string_view text_;
   TextReport& report_;
   std::vector<TypeFacts> facts_;  // one a type of the file
   Lexer lexer_{{}};
@@ -261,7 +261,7 @@ void check_circles(Part21& file, TextReport& report) {
 }
 
 void check_attributes(Part21& file, std::string_view text, TextReport& report) {
-  Checker(file, text.data() + text.size(), report).check_all();
+  Checker(file, text, report).check_all();
 }
 
 }  // namespace selvage::formats::step

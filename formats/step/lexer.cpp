@@ -38,8 +38,7 @@ void Lexer::skip_statement() {
 }
 
 void Lexer::new_line() {
-  ++line_;
-  line_start_ = at_ + 1;
+  line_start_ = {static_cast<std::size_t>(at_ - begin_) + 1, line_start_.line + 1, 1};
 }
 
 void Lexer::skip_blanks() {
@@ -104,7 +103,8 @@ Token Lexer::take() {
     at_ = skip_while(at_, end_, [](char part) {
       return is_digit(part) || part == '.' || part == 'E' || part == 'e' || part == '+' || part == '-';
     });
-    check_size({spot_.at, static_cast<std::size_t>(at_ - spot_.at)});
+    const char* const from = begin_ + spot_.offset;
+    check_size({from, static_cast<std::size_t>(at_ - from)});
     return Token::number;
   }
   if (!is_name(c)) throw Failure{spot_, fmt::format("{} is no part of a STEP file", in_quotes({&c, 1}))};

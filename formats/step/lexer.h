@@ -1,6 +1,7 @@
 // The tokens of a Part 21 text (ISO 10303-21) with their places.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -34,12 +35,12 @@ enum class Token {
 // Exceptions of next(): Failure.
 class Lexer {
  public:
-  // `bytes` begin at `start`.
-  explicit Lexer(std::string_view bytes, Spot start = {})
-      : at_(bytes.data()),
-        end_(bytes.data() + bytes.size()),
-        line_start_(at_ - (start.column - 1)),
-        line_(start.line) {}
+  // Of the text from `start` on.
+  explicit Lexer(std::string_view text, const Spot& start = {})
+      : begin_(text.data()),
+        at_(begin_ + std::min(start.offset, text.size())),
+        end_(begin_ + text.size()),
+        line_start_(start) {}
 
   [[nodiscard]] Token token() const { return token_; }
   [[nodiscard]] std::string_view text() const { return text_; }
@@ -53,7 +54,9 @@ class Lexer {
   void skip_statement();
 
  private:
-  [[nodiscard]] Spot here() const { return {at_, line_, static_cast<int>(at_ - line_start_) + 1}; }
+  [[nodiscard]] Spot here() const {
+    return line_start_.behind(static_cast<std::size_t>(at_ - begin_) - line_start_.offset);
+  }
   void new_line();
   void skip_blanks();
   void skip_comment();
@@ -63,10 +66,10 @@ class Lexer {
   Token take_string();
   Token take_enclosed(char last, std::string_view kind);
 
+  const char* begin_;
   const char* at_;
   const char* end_;
-  const char* line_start_;
-  int line_;
+  Spot line_start_;  // or where it began, on its first line
   Token token_ = Token::end;
   std::string_view text_;
   int reference_ = 0;

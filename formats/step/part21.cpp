@@ -267,9 +267,7 @@ class FileReader {
     } while (first.token() != Token::semicolon);
     return true;
   }
-  [[nodiscard]] Lexer lexer_at(const Statement& statement) const {
-    return Lexer(bytes_.substr(static_cast<std::size_t>(statement.spot.at - bytes_.data())), statement.spot);
-  }
+  [[nodiscard]] Lexer lexer_at(const Statement& statement) const { return Lexer(bytes_, statement.spot); }
 
   // Statements, and with them what they refer to, in this order.
   void regroup_refs(const std::vector<std::size_t>& order) {
@@ -327,7 +325,7 @@ std::string_view readable_bytes(const Source& source, const Part21& file, std::s
   for (const Statement& statement : file.statements) {
     if (!statement.is_left_out) continue;
     if (kept.empty()) kept = bytes;
-    Lexer lexer(bytes.substr(static_cast<std::size_t>(statement.spot.at - bytes.data())), statement.spot);
+    Lexer lexer(bytes, statement.spot);
     do lexer.next();
     while (lexer.token() != Token::word);
     kept[static_cast<std::size_t>(lexer.text().data() - bytes.data())] = 'Z';
@@ -336,8 +334,7 @@ std::string_view readable_bytes(const Source& source, const Part21& file, std::s
 }
 
 std::string first_string(const Source& source, const Statement& statement) {
-  Lexer lexer(source.bytes().substr(static_cast<std::size_t>(statement.spot.at - source.bytes().data())),
-              statement.spot);
+  Lexer lexer(source.bytes(), statement.spot);
   do lexer.next();
   while (lexer.token() != Token::string && lexer.token() != Token::semicolon);
   if (lexer.token() != Token::string) return {};

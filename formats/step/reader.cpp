@@ -475,7 +475,7 @@ std::optional<cad::Model> read(const Source& source, TextReport& report) {
   Result<cad::Model> model =
       solid::occt::guarded("the STEP file", [&] { return ModelReader(source, *file, report).read(); });
   if (model) return std::move(*model);
-  report.error(Spot{source.bytes().data(), 1, 1}, model.error().text, model.error().kind);
+  report.error(Spot(), model.error().text, model.error().kind);
   return std::nullopt;
 }
 

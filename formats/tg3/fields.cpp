@@ -9,7 +9,14 @@
 
 namespace selvage::formats::tg3 {
 
+namespace {
+
+constexpr double largest = 1e30;  // products of several of them are numbers still
+
+}  // namespace
+
 void Fields::error(const Message& message, TextPlace otherwise) const {
+  if (is_full()) return;
   const TextPlace place = message.place.line > 0 ? message.place : otherwise;
   report_.error(spot_at(source_, place), message.text, message.kind);
 }
@@ -30,14 +37,16 @@ std::vector<double> Fields::numbers(const Element& element, std::string_view nam
   bool is_good = words.size() == count;
   for (std::size_t i = 0; is_good && i < count; ++i) {
     const std::optional<double> value = read_number(trimmed(words[i]));
-    is_good = value.has_value();
-    values[i] = value.value_or(0.0);
+    is_good = value && std::abs(*value) <= largest;
+    values[i] = is_good ? *value : 0.0;
   }
   if (!is_good)
     error(element,
           fmt::format("the {} of <{}> is {}: {} expected", name, element.name, in_quotes(*text),
-                      count == 1 ? "a finite decimal number is"
-                                 : fmt::format("{} finite numbers with commas between them are", count)));
+                      count == 1
+                          ? fmt::format("a decimal number within {0:g} and -{0:g} is", largest)
+                          : fmt::format("{0} numbers within {1:g} and -{1:g} with commas between them are",
+                                        count, largest)));
   return values;
 }
 

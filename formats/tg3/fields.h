@@ -17,7 +17,7 @@ class Fields {
   Fields(const Source& source, TextReport& report) : source_(source), report_(report) {}
 
   void error(const Element& element, std::string text, Kind kind = Kind::malformed) const {
-    report_.error(spot_at(source_, element.place), std::move(text), kind);
+    if (!is_full()) report_.error(spot_at(source_, element.place), std::move(text), kind);
   }
   void error(const Message& message, TextPlace otherwise) const;
   void warning(TextPlace place, std::string text) const {

@@ -15,7 +15,8 @@ namespace selvage::formats::tg3 {
 namespace {
 
 constexpr std::size_t most_control_points = 5'000'000;  // of a unit, and of all copies of a yarn together
-constexpr double most_copies = 100'000;
+constexpr double most_copies = 100'000, most_steps = 1e9;
+constexpr double most_looked_at = 3e8;  // points of all copies, those that turn out to be outside as well
 constexpr std::size_t most_planes = 64;
 constexpr double barely = 1e-6;  // of a size: what reaches no farther into the domain is outside
 
@@ -78,13 +79,22 @@ class Layer {
         low += std::min(a, b);
         high += std::max(a, b);
       }
+      if (!(low > -most_steps && high < most_steps)) {
+        fields_.error(
+            error(Kind::limit, "the domain is too far from this yarn: more than 1e9 of its repeats"),
+            yarn_.place);
+        return std::nullopt;
+      }
       ranges.push_back({std::ceil(low - 1e-9), std::floor(high + 1e-9)});
       copies *= std::max(0.0, ranges.back()[1] - ranges.back()[0] + 1);
     }
-    if (!(copies <= most_copies)) {
+    if (!(copies <= most_copies &&
+          copies * static_cast<double>(unit_.grid.points.size()) <= most_looked_at)) {
       fields_.error(
-          error(Kind::limit, fmt::format("the domain holds more than {} copies of this yarn; make it smaller",
-                                         most_copies)),
+          error(Kind::limit,
+                fmt::format("the domain holds {:.3g} copies of this yarn of {} control points; make "
+                            "it smaller",
+                            copies, unit_.grid.points.size())),
           yarn_.place);
       return std::nullopt;
     }

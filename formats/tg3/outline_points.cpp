@@ -35,7 +35,8 @@ class LengthTable {
     std::vector<Vec2> scales;
     for (const Section& section : sections) scales.push_back(sizes_of(section).cwiseInverse());
     marks.push_back(marks.front() + 1);
-    constexpr int steps = 512;
+    // Between their corners straight outlines have one pace.
+    const int steps = std::ranges::all_of(sections, &Section::is_straight) ? 1 : 512;
     for (std::size_t k = 0; k + 1 < marks.size(); ++k)
       for (int i = 1; i <= steps; ++i) {
         // Fine beside the marks, where the outline of a power ellipse is fast.
@@ -133,8 +134,9 @@ void OutlinePoints::make_knots() {
   const int degree = this->degree();
   knots_.assign(static_cast<std::size_t>(degree), 0.0);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const bool is_joint =
-        i > 0 && std::ranges::find(arcs_, static_cast<Eigen::Index>(i), &Arc::first) != arcs_.end();
+    const auto arc = std::lower_bound(arcs_.begin(), arcs_.end(), static_cast<Eigen::Index>(i),
+                                      [](const Arc& one, Eigen::Index at) { return one.first < at; });
+    const bool is_joint = i > 0 && arc != arcs_.end() && arc->first == static_cast<Eigen::Index>(i);
     knots_.insert(knots_.end(), is_joint && degree > 1 ? 3 : 1, parameters_[i]);
   }
   knots_.insert(knots_.end(), static_cast<std::size_t>(degree), 1.0);

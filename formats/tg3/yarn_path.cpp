@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -101,22 +101,28 @@ void YarnPath::set_cubics() {
   const auto count = static_cast<Eigen::Index>(nodes_.size()), last = count - 1;
   const auto p = [&](Eigen::Index i) { return nodes_[static_cast<std::size_t>(i)].position.transpose(); };
   const Eigen::Index unknowns = interpolation_.is_periodic ? last : count;
-  Eigen::MatrixXd left = Eigen::MatrixXd::Zero(unknowns, unknowns), right(unknowns, 3);
+  std::vector<Eigen::Triplet<double>> left;  // what stands at one place is added
+  const auto add = [&](Eigen::Index row, Eigen::Index column, double value) {
+    left.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  };
+  Eigen::MatrixXd right(unknowns, 3);
   for (Eigen::Index i = 0; i < unknowns; ++i) {
     if (interpolation_.is_periodic) {
-      left(i, i) += 4;
-      left(i, (i + 1) % unknowns) += 1;
-      left(i, (i + unknowns - 1) % unknowns) += 1;
+      add(i, i, 4);
+      add(i, (i + 1) % unknowns, 1);
+      add(i, (i + unknowns - 1) % unknowns, 1);
       right.row(i) = 3 * (p(i + 1) - p(i));
       right.row(i) += i == 0 ? 3 * (p(last) - p(last - 1)) : 3 * (p(i) - p(i - 1));
     } else {
-      left(i, i) = i == 0 || i == last ? 2 : 4;
-      if (i > 0) left(i, i - 1) = 1;
-      if (i < last) left(i, i + 1) = 1;
+      add(i, i, i == 0 || i == last ? 2 : 4);
+      if (i > 0) add(i, i - 1, 1);
+      if (i < last) add(i, i + 1, 1);
       right.row(i) = 3 * (p(std::min(i + 1, last)) - p(std::max<Eigen::Index>(i - 1, 0)));
     }
   }
-  const Eigen::MatrixXd slopes = left.partialPivLu().solve(right);
+  Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
+  matrix.setFromTriplets(left.begin(), left.end());
+  const Eigen::MatrixXd slopes = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
   for (Eigen::Index i = 0; i < count; ++i)
     tangents_[static_cast<std::size_t>(i)] = slopes.row(i % unknowns).transpose();
 }

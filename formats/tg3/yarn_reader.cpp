@@ -10,9 +10,6 @@ namespace selvage::formats::tg3 {
 
 namespace {
 
-// The solve for a cubic grows with the third power of its nodes.
-constexpr std::size_t most_cubic_nodes = 2000;
-
 const Element* required(const Element& element, std::string_view name, const Fields& fields) {
   const Element* const child = element.child(name);
   if (child == nullptr) fields.error(element, fmt::format("this <{}> has no <{}>", element.name, name));
@@ -181,11 +178,6 @@ std::optional<TextileYarn> read_yarn(const Element& element, const Fields& field
   if (interpolation != nullptr)
     if (std::optional<Interpolation> read = read_interpolation(*interpolation, fields))
       yarn.interpolation = std::move(*read);
-  if (yarn.interpolation.form == Interpolation::Form::cubic && yarn.nodes.size() > most_cubic_nodes)
-    fields.error(element,
-                 fmt::format("this yarn has {} nodes; a cubic interpolation is read up to {}: split the yarn",
-                             yarn.nodes.size(), most_cubic_nodes),
-                 Kind::limit);
   if (const Element* const sections = required(element, "YarnSection", fields))
     YarnSections(*sections, yarn, fields).read();
   if (const Element* const fibres = element.child("FibreDistribution"))

@@ -264,6 +264,20 @@ std::vector<BlendPiece> pieces_of_positions(const YarnPath& path, const std::vec
 }
 
 Result<YarnUnit> surface_of(const YarnShape& shape, std::size_t most) {
+  // Each section is taken apart at the corners of all of them; curved ones are looked at closely on the way.
+  constexpr std::size_t most_straight = 2'000'000, most_curved = 50'000;
+  std::size_t corners = 0;
+  bool is_straight = true;
+  for (const Section& section : shape.sections) {
+    corners += section.corners.size();
+    is_straight = is_straight && section.is_straight;
+  }
+  if (corners * shape.sections.size() > (is_straight ? most_straight : most_curved))
+    return error(
+        Kind::limit,
+        fmt::format("the {} sections of this yarn have {} corners in all, each of which each section "
+                    "gets: give them corners at the same places, or split the yarn",
+                    shape.sections.size(), corners));
   return Surface(shape).make(most);
 }
 

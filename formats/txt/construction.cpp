@@ -1,6 +1,8 @@
 // The fabrics by construction: `weave`, `knit`, `warpknit`, `braid`.
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "fabric/draft.h"
 #include "fabric/lapping.h"
 #include "formats/txt/blocks.h"
@@ -30,14 +32,14 @@ std::optional<double> read_pitch(Parser& p) {
 
 // Names used in turn, `a,b`; `4a,2b`: four times one, twice the other.
 void read_threads(Parser& p, std::vector<std::string>& threads) {
-  constexpr std::size_t most = 1'000'000;
   do {
     const Spot spot = p.here();
     const std::size_t times = p.leading_count();
     const auto thread = p.reference(p.threads);
     if (!thread) continue;
-    if (times < 1 || times > most - threads.size())
-      return p.error(spot, fmt::format("a list of threads has from 1 to {} of them", most));
+    if (times < 1 || !p.take_listed(times))
+      return p.error(spot, fmt::format("the lists of threads of a text have from 1 to {} of them in all",
+                                       Parser::most_listed));
     threads.insert(threads.end(), times, std::string(*thread));
   } while (p.comma());
 }
@@ -63,8 +65,9 @@ struct OwnLoopRows {
   bool good = true;
 };
 
-// Of larger drafts the builder tells what is wrong with them.
-constexpr int most_shafts_checked = 1000;
+// Of larger drafts the builder tells what is wrong with them: here the cost would have nothing to do with the
+// length of the text.
+constexpr long long most_shafts_checked = 100;
 
 // A weave's statements, and where its draft stands: only the whole block tells whether there has to be one.
 struct WeaveBlock : Weave {
@@ -96,9 +99,8 @@ void read_sign_row(Parser& p, SignRows& rows) {
     if (c == ' ' || c == '\t') continue;
     const char sign = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     if (rows.signs.find(sign) == std::string_view::npos) {
-      const auto before = static_cast<int>(&c - text.data());
       rows.good = false;
-      return p.error({&c, spot.line, spot.column + before},
+      return p.error(spot.behind(static_cast<std::size_t>(&c - text.data())),
                      fmt::format("a {} has the signs {}", rows.kind, rows.meaning));
     }
     row += sign;
@@ -140,7 +142,8 @@ void read_draft_numbers(Parser& p, Draft& draft) {
   if (is_twill && p.more()) draft.hand = p.choice("direction of the twill", hand_words).value_or(Hand::z);
   if (is_satin && p.more()) draft.warp_faced = p.choice("face of the satin", face_words).value_or(false);
   // What cannot be is told where it stands.
-  if (p.finish() && draft.a <= most_shafts_checked)
+  const long long shafts = std::accumulate(numbers->begin(), numbers->end(), 0LL);
+  if (p.finish() && shafts <= most_shafts_checked)
     if (const Result<fabric::Drawdown> made = fabric::drawdown_of(draft);
         !made && made.error().kind == Kind::malformed)
       p.error(spot, made.error().text);
@@ -395,7 +398,7 @@ void read_bar(Parser& p, Warpknit& warpknit, std::string_view) {
   bar.lapping_place = spot.place();
   if (const Result<fabric::Lapping> read = fabric::parse_lapping(lapping, bar.lapping_place); !read) {
     const int before = read.error().place.column - spot.column;
-    return p.error({spot.at + before, spot.line, spot.column + before}, read.error().text);
+    return p.error(spot.behind(static_cast<std::size_t>(std::max(before, 0))), read.error().text);
   }
   bar.lapping = lapping;
   warpknit.bars.push_back(std::move(bar));
@@ -535,7 +538,7 @@ void read_axial(Parser& p, BraidBlock& braid, std::string_view) {
 // A word, or what stands in double quotes.
 std::string read_file_name(Parser& p, std::string_view what) {
   const Spot spot = p.here();
-  if (!p.more() || *spot.at == '"') return std::string(p.name(what).value_or(""));
+  if (!p.more() || p.next_is('"')) return std::string(p.name(what).value_or(""));
   const std::string_view word = p.take_word();
   if (text_prefix(word) != word.size() || word.find('"') != std::string_view::npos)
     p.error(spot, fmt::format("{} is no name of a file: UTF-8 without double quotes", in_quotes(word)));

@@ -36,6 +36,7 @@ bool is_number(std::string_view word) {
 
 Cursor::Cursor(const Source& source, TextReport& report) : report_(report) {
   std::string_view bytes = source.bytes();
+  begin_ = bytes.data();
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   at_ = line_begin_ = statement_ = token_ = bytes.data();
   end_ = at_ + bytes.size();
@@ -53,9 +54,8 @@ bool Cursor::ends_token(const char* p) const {
 }
 
 Spot Cursor::spot_at(const char* p) const {
-  const std::ptrdiff_t column = p - line_begin_ + 1;
-  constexpr std::ptrdiff_t most = std::numeric_limits<int>::max();
-  return {p, line_, static_cast<int>(std::min(column, most))};
+  return Spot{static_cast<std::size_t>(line_begin_ - begin_), line_, 1}.behind(
+      static_cast<std::size_t>(p - line_begin_));
 }
 
 bool Cursor::next_statement() {
@@ -138,6 +138,10 @@ std::string_view Cursor::word_at(const char* p) const {
   return {p, static_cast<std::size_t>(stop - p)};
 }
 
+bool Cursor::next_is_letter() {
+  return has_token() && is_letter(*at_);
+}
+
 std::string_view Cursor::peek_word() {
   return has_token() ? word_at(at_) : std::string_view{};
 }
@@ -187,13 +191,14 @@ bool Cursor::refuse_foreign(std::string_view token) {
 }
 
 std::optional<std::string_view> Cursor::quoted_name(std::string_view what, bool may_be_empty) {
-  const char* close = at_ + 1;
+  const char* const first = at_ + 1;
+  const char* close = first;
   while (close != end_ && *close != '"' && *close != '\n') ++close;
   const Spot open = spot_at(at_);
   at_ = close;
   if (close == end_ || *close != '"')
     return fail(open, fmt::format("{}: the quote is not closed on this line", what));
-  const std::string_view text(open.at + 1, static_cast<std::size_t>(close - open.at - 1));
+  const std::string_view text(first, static_cast<std::size_t>(close - first));
   ++at_;
   if (refuse_foreign(text)) return std::nullopt;
   if (text.empty() && !may_be_empty) return fail(last(), fmt::format("{}: an empty name", what));

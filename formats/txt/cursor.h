@@ -45,6 +45,10 @@ class Cursor {
   // The spot of the token taken last.
   [[nodiscard]] Spot last() const { return spot_at(token_); }
 
+  // Does the next token begin with this character, or with a letter?
+  bool next_is(char c) { return has_token() && *at_ == c; }
+  bool next_is_letter();
+
   // The next word, up to a blank; empty at the end of the line. Taking leaves it behind, peeking does not.
   std::string_view peek_word();
   std::string_view take_word();
@@ -103,6 +107,7 @@ class Cursor {
 
   TextReport& report_;
   Scope scope_;
+  const char* begin_;  // of all bytes
   const char* at_;
   const char* end_;
   const char* line_begin_;

@@ -287,13 +287,21 @@ void Parser::with_own_names(const std::function<void()>& read) {
   for (std::size_t i = 0; i < kinds.size(); ++i) around[i].swap(kinds[i]->lines);
   std::vector<Reference> references;
   references.swap(references_);
+  ++nesting_;
   read();
+  --nesting_;
   // The yarns of a block are its own: those of an edit are looked for when it is built.
   for (const Reference& reference : references_)
     if (reference.names != &yarns && !reference.names->lines.contains(reference.name))
       references.push_back(reference);
   references_ = std::move(references);
   for (std::size_t i = 0; i < kinds.size(); ++i) around[i].swap(kinds[i]->lines);
+}
+
+bool Parser::take_listed(std::size_t times) {
+  if (times > most_listed - listed_) return false;
+  listed_ += times;
+  return true;
 }
 
 void Parser::check_references() {

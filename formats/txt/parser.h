@@ -134,6 +134,12 @@ class Parser : public Cursor {
   void check_references();
   // What `read` defines is known only to what it reads, which knows what stands round it as well.
   void with_own_names(const std::function<void()>& read);
+  [[nodiscard]] int nesting() const { return nesting_; }  // of such calls
+
+  // Of lists of threads that say how often each comes, over the whole text. False: with these there are more
+  // than a text may have.
+  static constexpr std::size_t most_listed = 1'000'000;
+  bool take_listed(std::size_t times);
 
   TextReport& report;
   std::span<const fabric::Setting> settings;  // of params, from outside
@@ -163,6 +169,8 @@ class Parser : public Cursor {
   const Block* block_ = nullptr;  // the innermost one that is open
   bool unwinding_ = false;        // a missing `end` was reported; those of the outer blocks are not
   std::vector<Reference> references_;
+  int nesting_ = 0;
+  std::size_t listed_ = 0;
 };
 
 template <class T>

@@ -8,7 +8,7 @@ fabric::PointsFile read_points_file(Parser& p) {
   constexpr std::array<Word<bool>, 2> words{{{"yarn", true}, {"error", false}}};
   fabric::PointsFile points;
   points.place = p.statement().place();
-  if (p.more() && *p.here().at != '"') {
+  if (p.more() && !p.next_is('"')) {
     points.file = p.take_word();
     if (points.file.find('"') != std::string::npos || text_prefix(points.file) != points.file.size())
       p.error(p.last(), "the name of a file is UTF-8, and has no double quotes");

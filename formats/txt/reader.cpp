@@ -73,7 +73,7 @@ void read_param(Parser& p, Fabric&, std::string_view) {
     p.error(spot, fmt::format("the param {} is there twice; first on line {}", in_quotes(*name), *line));
 }
 
-void check_settings(Parser& p, const Source& source) {
+void check_settings(Parser& p) {
   if (p.is_stopped() || p.report.errors() > 0) return;
   const std::vector<std::string_view> known = p.scope().names();
   for (const fabric::Setting& setting : p.settings) {
@@ -82,8 +82,7 @@ void check_settings(Parser& p, const Source& source) {
     if (hint.empty())
       hint = known.empty() ? "; it has none (param NAME VALUE)"
                            : fmt::format("; it has: {}", fmt::join(known, ", "));
-    p.error({source.bytes().data(), 1, 1},
-            fmt::format("--set {}: the text has no such param{}", setting.name, hint));
+    p.error(Spot(), fmt::format("--set {}: the text has no such param{}", setting.name, hint));
   }
 }
 
@@ -129,7 +128,7 @@ const Table<Fabric>& file_table() {
 // Nothing that could be read as text at all: one error says so. False: there is none.
 bool refuse_binary(const Source& source, TextReport& report) {
   const std::string_view bytes = source.bytes();
-  const Spot begin{bytes.data(), 1, 1};
+  const Spot begin;
   if (bytes.empty()) {
     report.error(begin, "the file is empty; a fabric begins with the line 'fabric 1'");
     return true;
@@ -144,16 +143,12 @@ bool refuse_binary(const Source& source, TextReport& report) {
     return (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F;
   };
   if (std::none_of(head.begin(), head.end(), is_control)) return false;
-  Spot spot = begin;
-  const std::string_view text = head.substr(head.starts_with("\xEF\xBB\xBF") ? 3 : 0);
-  for (const char* p = text.data(); p != text.data() + text.size();) {
-    const std::size_t length = text_prefix({p, static_cast<std::size_t>(text.data() + text.size() - p)});
-    p += length;
-    spot.at = p;
-    spot.column += static_cast<int>(length);
-    if (*p == '\n') spot = {p + 1, spot.line + 1, 1};
-    if (*p != '\n' && *p != '\r') break;
-    if (*p++ == '\r') ++spot.column;
+  Spot spot;
+  const std::size_t mark = head.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  for (spot.offset = mark; spot.offset < head.size();) {
+    spot = spot.behind(text_prefix(head.substr(spot.offset)));
+    if (spot.offset == head.size() || (head[spot.offset] != '\n' && head[spot.offset] != '\r')) break;
+    spot = head[spot.offset] == '\n' ? Spot{spot.offset + 1, spot.line + 1, 1} : spot.behind(1);
   }
   report.error(spot, "this is not a text file; a fabric is a text that begins with the line 'fabric 1'");
   return true;
@@ -226,6 +221,11 @@ void read_block_of_yarns(Parser& p, fabric::Fabric& fabric, std::string_view wor
   block.place = opened.place();
   block.name = p.new_name(p.blocks).value_or("");
   p.finish();
+  constexpr int deepest = 32;
+  if (p.nesting() == deepest) {
+    p.report.error(opened, fmt::format("blocks stand in each other at most {} deep", deepest), Kind::limit);
+    return p.stop();
+  }
   block.fabric = std::make_shared<Fabric>();
   const int errors = p.report.errors();
   bool is_closed = false;
@@ -276,13 +276,12 @@ std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting
   p.fabric.file = source.name();
   if (!p.next_statement()) {
     if (report.errors() == 0)
-      p.error({source.bytes().data(), 1, 1},
-              "the file has no statement; a fabric begins with the line 'fabric 1'");
+      p.error(Spot(), "the file has no statement; a fabric begins with the line 'fabric 1'");
   } else if (read_version(p)) {
     p.read_block("", "", p.statement(), file_table(), p.fabric);
     p.check_references();
     p.fabric.tell_threads_their_materials();
-    check_settings(p, source);
+    check_settings(p);
     if (report.errors() == 0)
       if (const Status fits = fabric::check_uses(p.fabric); !fits)
         report.error(spot_at(source, fits.error().place), fits.error().text, fits.error().kind);

@@ -240,7 +240,7 @@ void read_knots(Parser& p, GridRows& rows) {
   std::vector<double>& knots = *along ? rows.grid.knots_along : rows.grid.knots_round;
   if (!knots.empty()) p.error(spot, fmt::format("the knots {} are given twice", *along ? "along" : "round"));
   (*along ? rows.knots_along_spot : rows.knots_round_spot) = spot;
-  while (p.more() && !is_letter(*p.here().at)) {
+  while (p.more() && !p.next_is_letter()) {
     const auto knot = p.number("a knot");
     if (!knot) {
       p.go_on();  // all that are wrong are told

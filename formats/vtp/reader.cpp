@@ -45,7 +45,10 @@ class Reader {
       if (tag_.starts_with("?") || tag_.starts_with("!")) continue;
       if (tag_.starts_with("/")) {
         if (!open_.empty()) open_.pop_back();
-        if (tag_ == "/Piece" && !take_piece(measured)) return std::nullopt;
+        if (tag_ != "/Piece") continue;
+        if (!take_piece(measured)) return std::nullopt;
+        // The next piece has its own; the names of the yarns stand before all of them.
+        std::erase_if(arrays_, [](const auto& array) { return !array.first.starts_with("FieldData/"); });
         continue;
       }
       const std::string_view name = tag_.substr(0, std::min(tag_.find_first_of(" \t\r\n/"), tag_.size()));
@@ -158,7 +161,7 @@ class Reader {
     std::string name;
     for (const double byte : bytes->values) {
       if (byte != 0.0) {
-        name += static_cast<char>(static_cast<unsigned char>(static_cast<int>(byte) & 0xFF));
+        name += static_cast<char>(static_cast<unsigned char>(std::clamp(byte, 0.0, 255.0)));
       } else {
         names.push_back(std::exchange(name, {}));
       }
@@ -179,7 +182,7 @@ class Reader {
                        *const parameter = of_points("parameter"), *const speed = of_points("speed"),
                        *const tangent = of_points("tangent", 3), *const up = of_points("up", 3);
     if (report_.errors() > 0) return false;
-    const std::vector<std::string> all_names = names();
+    if (names_.empty()) names_ = names();
     const Array* const roles = find("CellData/role");
     std::size_t first = 0;
     for (std::size_t line = 0; line < offsets->values.size(); ++line) {
@@ -187,8 +190,8 @@ class Reader {
       if (!(end >= static_cast<double>(first) && end <= static_cast<double>(ids->values.size())))
         return refuse(offsets->places[line], "this offset is not among the points of the lines"), false;
       MeasuredYarn yarn;
-      yarn.name = line < all_names.size() && !all_names[line].empty()
-                      ? all_names[line]
+      yarn.name = line < names_.size() && !names_[line].empty()
+                      ? names_[line]
                       : fmt::format("yarn_{}", measured.yarns.size() + 1);
       if (roles != nullptr && line < roles->values.size() && roles->values[line] >= 0.0 &&
           roles->values[line] <= static_cast<double>(fabric::Role::other))
@@ -242,6 +245,7 @@ class Reader {
   TextPlace tag_place_;
   std::vector<std::string_view> open_;
   Arrays arrays_;
+  std::vector<std::string> names_;  // of the lines
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/number_text.h"
 #include "core/text_report.h"
@@ -20,7 +21,7 @@ namespace selvage::formats::vtu {
 
 namespace {
 
-// zlib makes at most about a thousand bytes of one.
+// zlib makes at most 1032 bytes of one.
 constexpr std::uint64_t most_growth = 1100;
 
 int value_of(char letter) {
@@ -43,17 +44,18 @@ class Bytes {
       rest_.remove_prefix(count);
       return bytes;
     }
-    if (count > waiting_.size() + rest_.size()) return std::nullopt;
-    while (waiting_.size() < count)
-      if (!decode_four()) return std::nullopt;
-    std::string bytes = waiting_.substr(0, count);
-    waiting_.erase(0, count);
+    if (count > waiting_.size() - taken_ + rest_.size()) return std::nullopt;
+    while (waiting_.size() - taken_ < count)
+      if (!decode_more()) return std::nullopt;
+    std::string bytes = waiting_.substr(taken_, count);
+    taken_ += count;
     return bytes;
   }
 
  private:
-  // Many at a time: what is erased from the front has to be moved.
-  bool decode_four() {
+  // Many at a time: what was taken goes then.
+  bool decode_more() {
+    waiting_.erase(0, std::exchange(taken_, 0));
     const std::size_t before = waiting_.size();
     for (int round = 0; round < 65536; ++round) {
       std::uint32_t bits = 0;
@@ -82,6 +84,7 @@ class Bytes {
   std::string_view rest_;
   bool is_base64_;
   std::string waiting_;
+  std::size_t taken_ = 0;  // of its front
 };
 
 template <class T>
@@ -100,13 +103,24 @@ std::vector<double> numbers(const std::string& bytes, bool is_big_endian) {
   return list;
 }
 
+// Of one number; 0: a type that is none of numbers.
+std::size_t width_of(std::string_view type) {
+  for (const auto& [name, width] :
+       {std::pair("Float64", 8), std::pair("Float32", 4), std::pair("Int64", 8), std::pair("UInt64", 8),
+        std::pair("Int32", 4), std::pair("UInt32", 4), std::pair("Int16", 2), std::pair("UInt16", 2),
+        std::pair("Int8", 1), std::pair("UInt8", 1)})
+    if (type == name) return static_cast<std::size_t>(width);
+  return 0;
+}
+
 Message too_short() {
   return error(Kind::malformed, "the data end before the array does");
 }
 
 // As vtkZLibDataCompressor writes them (encoding.h).
 Result<std::string> inflated(Bytes& bytes, std::uint64_t count,
-                             const std::function<std::optional<std::uint64_t>()>& next) {
+                             const std::function<std::optional<std::uint64_t>()>& next, std::size_t width,
+                             NumberBudget& budget) {
   const std::optional<std::uint64_t> size = next(), rest = next();
   if (!size || !rest) return too_short();
   std::vector<std::uint64_t> packed;
@@ -118,8 +132,9 @@ Result<std::string> inflated(Bytes& bytes, std::uint64_t count,
   std::string all;
   for (std::uint64_t k = 0; k < count; ++k) {
     const std::uint64_t length = k + 1 == count && *rest > 0 ? *rest : *size;
-    if (length > most_growth * packed[k] + 64)
+    if (packed[k] < length / most_growth)
       return error(Kind::malformed, "a compressed block cannot hold as much as its head says");
+    if (Status fits = budget.take(length / width); !fits) return fits.error();
     const std::optional<std::string> block = bytes.take(packed[k]);
     if (!block) return too_short();
     const std::size_t at = all.size();
@@ -134,6 +149,17 @@ Result<std::string> inflated(Bytes& bytes, std::uint64_t count,
 }
 
 }  // namespace
+
+Status NumberBudget::take(std::uint64_t numbers) {
+  if (numbers <= left_) {
+    left_ -= numbers;
+    return {};
+  }
+  return error(Kind::limit,
+               fmt::format("the arrays of a file of this size may have {} numbers in all, and with this one "
+                           "they have more: write the file without compression",
+                           most_));
+}
 
 Result<std::vector<double>> decode_words(std::string_view text) {
   std::vector<double> list;
@@ -151,7 +177,10 @@ Result<std::vector<double>> decode_words(std::string_view text) {
 }
 
 Result<std::vector<double>> decode(std::string_view data, bool is_base64, std::string_view type,
-                                   const Coding& coding) {
+                                   const Coding& coding, NumberBudget& budget) {
+  const std::size_t width = width_of(type);
+  if (width == 0)
+    return error(Kind::unsupported, fmt::format("arrays of the type {} are not read", in_quotes(type)));
   Bytes bytes(data, is_base64);
   const auto next = [&]() -> std::optional<std::uint64_t> {
     const std::optional<std::string> word = bytes.take(coding.has_long_heads ? 8 : 4);
@@ -163,10 +192,11 @@ Result<std::vector<double>> decode(std::string_view data, bool is_base64, std::s
   if (!first) return too_short();
   std::string raw;
   if (coding.is_compressed) {
-    Result<std::string> whole = inflated(bytes, *first, next);
+    Result<std::string> whole = inflated(bytes, *first, next, width, budget);
     if (!whole) return whole.error();
     raw = std::move(*whole);
   } else {
+    if (Status fits = budget.take(*first / width); !fits) return fits.error();
     std::optional<std::string> whole = bytes.take(*first);
     if (!whole) return too_short();
     raw = std::move(*whole);
@@ -181,8 +211,7 @@ Result<std::vector<double>> decode(std::string_view data, bool is_base64, std::s
   if (type == "Int16") return numbers<std::int16_t>(raw, big);
   if (type == "UInt16") return numbers<std::uint16_t>(raw, big);
   if (type == "Int8") return numbers<std::int8_t>(raw, big);
-  if (type == "UInt8") return numbers<std::uint8_t>(raw, big);
-  return error(Kind::unsupported, fmt::format("arrays of the type {} are not read", in_quotes(type)));
+  return numbers<std::uint8_t>(raw, big);
 }
 
 }  // namespace selvage::formats::vtu

@@ -84,9 +84,15 @@ std::optional<Shape> shape_of(int type) {
   }
 }
 
+// The nearest whole number; of what is none (nan, far too large) the nearest that counts something.
+long long whole_number(double value) {
+  return std::isnan(value) ? 0 : std::llround(std::clamp(value, -1e9, 1e9));
+}
+
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : report_(report), text_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report)
+      : report_(report), text_(source.bytes()), budget_(text_.size()) {}
 
   std::optional<FieldMesh> read() {
     find_appended();
@@ -118,8 +124,8 @@ class Reader {
   [[nodiscard]] Spot spot(std::size_t at) const {
     const std::string_view before = text_.substr(0, at);
     const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
-    return {text_.data() + at, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
-            static_cast<int>(at - line_begin) + 1};
+    const auto lines = std::count(before.begin(), before.end(), '\n');
+    return Spot{line_begin, 1 + static_cast<int>(lines), 1}.behind(at - line_begin);
   }
   std::nullopt_t refuse(std::size_t at, std::string text, Kind kind = Kind::malformed) {
     return report_.error(spot(at), std::move(text), kind);
@@ -176,7 +182,7 @@ class Reader {
     std::string_view name = comment.substr(colon + 1);
     if (name.starts_with(' ')) name.remove_prefix(1);
     if (name.ends_with(' ')) name.remove_suffix(1);
-    names_[static_cast<long long>(*number)] = std::string(name);
+    names_[whole_number(*number)] = std::string(name);
   }
 
   bool take_array(const Tag& tag) {
@@ -193,14 +199,14 @@ class Reader {
       values = decode_words(inside);
     } else if (format == "binary") {
       values = decode(inside.substr(std::min(inside.find_first_not_of(" \t\r\n"), inside.size())), true, type,
-                      coding_);
+                      coding_, budget_);
     } else {
       const std::optional<double> offset = read_number(tag.attribute("offset"));
       if (!offset || !(*offset >= 0.0) || *offset > static_cast<double>(appended_.size()))
         return fail(tag.at,
                     fmt::format("the array {} has no place among the appended data", in_quotes(array.name)));
-      values =
-          decode(appended_.substr(static_cast<std::size_t>(*offset)), appended_is_base64_, type, coding_);
+      values = decode(appended_.substr(static_cast<std::size_t>(*offset)), appended_is_base64_, type, coding_,
+                      budget_);
     }
     if (!values)
       return fail(tag.at, fmt::format("the array {}: {}", in_quotes(array.name), values.error().text),
@@ -237,7 +243,7 @@ class Reader {
       if (!(end >= begin && end <= static_cast<double>(ids->values.size())))
         return fail(offsets->at, fmt::format("the offset of cell {} is not among its points", cell));
       const auto first = static_cast<std::size_t>(std::exchange(begin, end));
-      const auto type = static_cast<int>(std::clamp(types->values[cell], 0.0, 255.0));
+      const auto type = static_cast<int>(whole_number(types->values[cell]));
       const std::optional<Shape> shape = shape_of(type);
       if (!shape) {
         ++left_out_;
@@ -261,10 +267,13 @@ class Reader {
       mesh_.elements.push_back(element);
     }
     take_regions(kept);
-    take_fields("PointData", true, first_node, count, {});
-    take_fields("CellData", false, mesh_.elements.size() - kept.size(), offsets->values.size(), kept);
+    Status fits = take_fields("PointData", true, first_node, count, {});
+    if (fits)
+      fits =
+          take_fields("CellData", false, mesh_.elements.size() - kept.size(), offsets->values.size(), kept);
+    if (fits) fits = fill_fields();
     arrays_.clear();
-    return true;
+    return fits || fail(at, fmt::format("fields that few pieces have: {}", fits.error().text), Kind::limit);
   }
 
   // By the number of the yarn, as this program writes it, or of the material.
@@ -275,7 +284,7 @@ class Reader {
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const double value =
           number != nullptr && kept[k] < number->values.size() ? number->values[kept[k]] : 0.0;
-      const long long key = number == nullptr ? 0 : std::llround(std::clamp(value, -1e9, 1e9));
+      const long long key = number == nullptr ? 0 : whole_number(value);
       const auto [known, is_new] = region_of_.try_emplace(key, static_cast<std::uint32_t>(region_of_.size()));
       mesh_.elements[mesh_.elements.size() - kept.size() + k].region = known->second;
     }
@@ -296,8 +305,8 @@ class Reader {
 
   // What is there of numbers of each point or cell. A field that a later piece has not is 0 there, and so is
   // one in the pieces before its first.
-  void take_fields(std::string_view where, bool of_nodes, std::size_t first, std::size_t count,
-                   const std::vector<std::size_t>& kept) {
+  Status take_fields(std::string_view where, bool of_nodes, std::size_t first, std::size_t count,
+                     const std::vector<std::size_t>& kept) {
     const std::string prefix = fmt::format("{}/", where);
     for (const auto& [key, array] : arrays_) {
       if (!key.starts_with(prefix) || array.values.size() != count * array.components) continue;
@@ -309,6 +318,8 @@ class Reader {
       if (field == mesh_.fields.end())
         field = mesh_.fields.insert(field, {array.name, of_nodes, static_cast<int>(array.components), {}, 0});
       if (field->components != static_cast<int>(array.components)) continue;
+      if (field->values.empty())
+        if (Status fits = budget_.take(first * array.components); !fits) return fits;
       field->values.resize(first * array.components);
       const std::size_t rows = of_nodes ? count : kept.size();
       for (std::size_t k = 0; k < rows; ++k)
@@ -316,16 +327,25 @@ class Reader {
           field->values.push_back(
               static_cast<float>(array.values[(of_nodes ? k : kept[k]) * array.components + c]));
     }
-    for (FieldMesh::Field& field : mesh_.fields)
-      if (field.of_nodes == of_nodes)
-        field.values.resize(static_cast<std::size_t>(field.components) *
-                            (of_nodes ? mesh_.nodes.size() : mesh_.elements.size()));
+    return {};
+  }
+
+  // Each has values of all nodes or elements.
+  Status fill_fields() {
+    for (FieldMesh::Field& field : mesh_.fields) {
+      const std::size_t size = static_cast<std::size_t>(field.components) *
+                               (field.of_nodes ? mesh_.nodes.size() : mesh_.elements.size());
+      if (Status fits = budget_.take(size - field.values.size()); !fits) return fits;
+      field.values.resize(size);
+    }
+    return {};
   }
 
   TextReport& report_;
   std::string_view text_, within_, appended_;
   bool appended_is_base64_ = false;
   Coding coding_;
+  NumberBudget budget_;
   std::map<std::string, Array> arrays_;  // of this piece
   std::map<long long, std::string> names_;
   std::map<long long, std::uint32_t> region_of_;

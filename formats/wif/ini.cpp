@@ -36,10 +36,6 @@ std::string lowered(std::string_view text) {
   return lowered;
 }
 
-Spot spot_of(const char* at, std::string_view line, int number) {
-  return {at, number, static_cast<int>(at - line.data()) + 1};
-}
-
 }  // namespace
 
 const Entry* Section::find(std::string_view key) const {
@@ -59,13 +55,11 @@ const Entry* Ini::find(std::string_view section, std::string_view key) const {
 }
 
 Ini::Ini(const Source& source, TextReport& report) {
-  std::string_view rest = without_mark(source.bytes());
-  int number = 0;
-  while (!rest.empty()) {
-    const std::string_view line = next_line(rest);
-    read_line(line, ++number, report);
-  }
-  end_ = {source.bytes().data() + source.bytes().size(), number + 1, 1};
+  const std::string_view bytes = source.bytes();
+  std::string_view rest = without_mark(bytes);
+  for (end_ = {bytes.size() - rest.size(), 1, 1}; !rest.empty();
+       end_ = {bytes.size() - rest.size(), end_.line + 1, 1})
+    read_line(next_line(rest), end_, report);
 }
 
 void Ini::open_section(std::string_view name, const Spot& spot, TextReport& report) {
@@ -78,10 +72,13 @@ void Ini::open_section(std::string_view name, const Spot& spot, TextReport& repo
         spot, fmt::format("the section {} stands here once more; its entries are joined", in_quotes(name)));
 }
 
-void Ini::read_line(std::string_view line, int number, TextReport& report) {
+void Ini::read_line(std::string_view line, const Spot& begin, TextReport& report) {
   const std::string_view text = trimmed(line);
   if (text.empty() || text.starts_with(';')) return;
-  const Spot spot = spot_of(text.data(), line, number);
+  const auto spot_of = [&](std::string_view part) {
+    return begin.behind(static_cast<std::size_t>(part.data() - line.data()));
+  };
+  const Spot spot = spot_of(text);
   if (const std::string_view name = section_name(text); !name.empty())
     return open_section(name, spot, report);
   if (sections_.empty()) {
@@ -95,7 +92,7 @@ void Ini::read_line(std::string_view line, int number, TextReport& report) {
   entry.key = trimmed(text.substr(0, equals));
   entry.value = entry.has_value ? trimmed(text.substr(equals + 1)) : text.substr(text.size());
   entry.key_spot = spot;
-  entry.value_spot = spot_of(entry.value.data(), line, number);
+  entry.value_spot = spot_of(entry.value);
   sections_[current_].entries.push_back(entry);
 }
 

@@ -40,9 +40,10 @@ class Ini {
   [[nodiscard]] const Entry* find(std::string_view section, std::string_view key) const;
   [[nodiscard]] const std::vector<Section>& sections() const { return sections_; }
   [[nodiscard]] const Spot& end() const { return end_; }
+  [[nodiscard]] std::size_t size() const { return end_.offset; }  // bytes
 
  private:
-  void read_line(std::string_view line, int number, TextReport& report);
+  void read_line(std::string_view line, const Spot& begin, TextReport& report);
   void open_section(std::string_view name, const Spot& spot, TextReport& report);
 
   std::vector<Section> sections_;

@@ -105,17 +105,29 @@ Lifts read_liftplan(const Section& section, const Loom& loom, TextReport& report
   return lifts;
 }
 
-Lifts read_treadling(const Section& section, const Section& tieup_section, const Loom& loom,
+// `most`: shafts of all picks together, since one treadle may be tied to thousands and trodden for each pick.
+Lifts read_treadling(const Section& section, const Section& tieup_section, const Loom& loom, std::size_t most,
                      TextReport& report) {
   const std::map<int, Shafts> tieup = read_tieup(tieup_section, loom, report);
   const std::vector<Numbered> lines = numbered(section, loom.weft, report);
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
   std::set<int> loose;  // treadles that were told of already
+  std::size_t all = 0;
   for (const Numbered& line : lines) {
     Shafts& moved = lifts[static_cast<std::size_t>(line.number) - 1];
     for (const int treadle : named(line, loom.treadles, report)) {
       const auto tied = tieup.find(treadle);
       if (tied != tieup.end()) {
+        all += tied->second.size();
+        if (all > most) {
+          report.error(
+              line.entry->value_spot,
+              fmt::format("up to this pick the treadles move more than {} shafts, each pick's counted: "
+                          "the draft of a file of this size has fewer; tie treadles to fewer shafts",
+                          most),
+              Kind::limit);
+          return lifts;
+        }
         moved.insert(moved.end(), tied->second.begin(), tied->second.end());
       } else if (loom.treadles.limit.empty()) {
         report.error(line.entry->value_spot, fmt::format("treadle {} has no tie-up", treadle));
@@ -161,9 +173,10 @@ std::optional<Sheds> read_sheds(const Ini& ini, const Loom& loom, TextReport& re
                                        : "there is neither [LIFTPLAN] nor [TIEUP] and [TREADLING]");
   if (plan == nullptr && tieup == nullptr)
     return report.error(treadling->spot, "[TREADLING] needs [TIEUP], which is missing");
-  if (plan == nullptr) return Sheds{treadling, read_treadling(*treadling, *tieup, loom, report)};
+  const std::size_t most = 1'000'000 + 32 * ini.size();
+  if (plan == nullptr) return Sheds{treadling, read_treadling(*treadling, *tieup, loom, most, report)};
   Sheds sheds{plan, read_liftplan(*plan, loom, report)};
-  if (treadling != nullptr && read_treadling(*treadling, *tieup, loom, report) != sheds.lifts)
+  if (treadling != nullptr && read_treadling(*treadling, *tieup, loom, most, report) != sheds.lifts)
     report.warning(plan->spot, "[LIFTPLAN] and [TREADLING] differ; the lift plan counts");
   return sheds;
 }

@@ -35,7 +35,7 @@ void check_version(const Ini& ini, TextReport& report) {
 
 bool refuse_binary(const Source& source, TextReport& report) {
   const std::string_view bytes = source.bytes();
-  const Spot start{bytes.data(), 1, 1};
+  const Spot start;
   const bool is_wide = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
   if (is_wide)
     report.error(start, "the text is UTF-16; save it as UTF-8");
@@ -71,8 +71,7 @@ std::string made_title(std::string_view text) {
 std::optional<fabric::Fabric> read(const Source& source, TextReport& report) {
   if (refuse_binary(source, report)) return std::nullopt;
   const Ini ini(source, report);
-  if (ini.find("WIF") == nullptr)
-    return report.error(Spot{source.bytes().data(), 1, 1}, "this is no WIF: the section [WIF] is missing");
+  if (ini.find("WIF") == nullptr) return report.error(Spot(), "this is no WIF: the section [WIF] is missing");
   check_version(ini, report);
   check_contents(ini, report);
   const Loom loom = read_loom(ini, report);

@@ -22,10 +22,7 @@ std::optional<T> parsed(std::string_view text) {
 }
 
 Spot spot_in(const Entry& entry, std::string_view part) {
-  Spot spot = entry.value_spot;
-  spot.column += static_cast<int>(part.data() - spot.at);
-  spot.at = part.data();
-  return spot;
+  return entry.value_spot.behind(static_cast<std::size_t>(part.data() - entry.value.data()));
 }
 
 std::optional<int> whole(const Entry& entry, std::string_view text, TextReport& report) {

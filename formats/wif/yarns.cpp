@@ -140,22 +140,21 @@ class ThreadNames {
 
   std::string name_of(const std::optional<Color>& color, double diameter, TextPlace place) {
     const std::string stem = color ? fmt::format("color{}", color->number) : std::string("yarn");
-    std::vector<std::size_t>& same = by_stem_[stem];
-    for (const std::size_t i : same)
-      if (threads_[i].diameter == diameter) return threads_[i].name;
+    std::map<double, std::size_t>& same = by_stem_[stem];
+    const auto [known, is_new] = same.try_emplace(diameter, threads_.size());
+    if (!is_new) return threads_[known->second].name;
     fabric::Thread thread;
-    thread.name = same.empty() ? stem : fmt::format("{}_{}", stem, same.size() + 1);
+    thread.name = same.size() == 1 ? stem : fmt::format("{}_{}", stem, same.size());
     thread.place = place;
     thread.diameter = diameter;
     if (color) thread.color = color->rgb;
-    same.push_back(threads_.size());
     threads_.push_back(std::move(thread));
     return threads_.back().name;
   }
 
  private:
   std::vector<fabric::Thread>& threads_;
-  std::map<std::string, std::vector<std::size_t>> by_stem_;
+  std::map<std::string, std::map<double, std::size_t>> by_stem_;  // by the diameter
 };
 
 // The fewest names that give the list when they are used in turn.

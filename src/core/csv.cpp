@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace selvage {
 
@@ -112,12 +113,11 @@ Result<CsvTable> read_csv(std::string_view text) {
     if (table.columns.empty()) {
       table.columns = std::move(*row);
       table.head_line = place.line;
-      for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        const std::string& name = table.columns[i];
+      std::set<std::string_view> known;
+      for (const std::string& name : table.columns) {
         if (name.empty())
-          return error(Kind::malformed, fmt::format("column {} has no name", i + 1)).placed(place);
-        if (std::find(table.columns.begin(), table.columns.begin() + static_cast<std::ptrdiff_t>(i), name) !=
-            table.columns.begin() + static_cast<std::ptrdiff_t>(i))
+          return error(Kind::malformed, fmt::format("column {} has no name", known.size() + 1)).placed(place);
+        if (!known.insert(name).second)
           return error(Kind::malformed, fmt::format("the column '{}' is there twice", name)).placed(place);
       }
       continue;

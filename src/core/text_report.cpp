@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 namespace selvage {
 
@@ -31,47 +30,45 @@ std::string made_readable(std::string_view bytes) {
 }
 
 // The line round `spot`, cut to what fits a terminal, and the caret in it.
-void add_excerpt(Message& message, const Spot& spot, std::string_view bytes) {
-  const char* const end = bytes.data() + bytes.size();
-  const char* from = spot.at - (spot.column - 1);
-  const auto room = static_cast<std::size_t>(end - spot.at);
-  const void* newline = room > 0 ? std::memchr(spot.at, '\n', std::min(room, 2 * excerpt_after)) : nullptr;
-  const bool goes_on = newline == nullptr && room > 2 * excerpt_after;
-  const char* to = newline != nullptr ? static_cast<const char*>(newline)
-                   : goes_on          ? spot.at + excerpt_after
-                                      : end;
-  if (!goes_on && to > from && to[-1] == '\r') --to;
-  std::string before, after;
-  if (static_cast<std::size_t>(spot.at - from) > 2 * excerpt_before) {
-    from = spot.at - excerpt_before;
-    while (from < spot.at && is_continuation(*from)) ++from;
+void add_excerpt(Message& message, const Spot& spot, std::string_view text) {
+  const std::size_t at = std::min(spot.offset, text.size());
+  const std::size_t column = std::min(at, static_cast<std::size_t>(std::max(spot.column, 1)) - 1);
+  std::string_view left = text.substr(at - column, column), right = text.substr(at);
+  left.remove_prefix(left.rfind('\n') + 1);  // npos + 1 is 0
+  right = right.substr(0, right.substr(0, 2 * excerpt_after).find('\n'));
+  const bool goes_on = right.size() > 2 * excerpt_after;
+  if (goes_on) {
+    std::size_t end = excerpt_after;
+    while (end > 0 && is_continuation(right[end])) --end;
+    right = right.substr(0, end);
+  } else if (right.ends_with('\r')) {
+    right.remove_suffix(1);
+  } else if (right.empty() && left.ends_with('\r')) {
+    left.remove_suffix(1);
+  }
+  std::string before;
+  if (left.size() > 2 * excerpt_before) {
+    left.remove_prefix(left.size() - excerpt_before);
+    while (!left.empty() && is_continuation(left.front())) left.remove_prefix(1);
     before = "...";
   }
-  if (goes_on) {
-    while (to > spot.at && is_continuation(*to)) --to;
-    after = "...";
-  }
-  to = std::max(to, from);
-  const auto caret_at = static_cast<std::size_t>(std::min(spot.at, to) - from);
-  const std::string_view line(from, static_cast<std::size_t>(to - from));
-  const std::string left = before + made_readable(line.substr(0, caret_at));
-  message.excerpt = left + made_readable(line.substr(caret_at)) + after;
-  if (!message.excerpt.empty()) message.caret = static_cast<int>(left.size()) + 1;
+  before += made_readable(left);
+  message.excerpt = before + made_readable(right) + (goes_on ? "..." : "");
+  if (!message.excerpt.empty()) message.caret = static_cast<int>(before.size()) + 1;
 }
 
 }  // namespace
 
 Spot spot_at(const Source& source, TextPlace place) {
-  std::string_view rest = source.bytes();
-  for (int line = 1; line < place.line; ++line) {
-    const std::size_t newline = rest.find('\n');
-    if (newline == std::string_view::npos)
-      return {rest.data() + rest.size(), line, static_cast<int>(rest.size()) + 1};
-    rest.remove_prefix(newline + 1);
+  const std::string_view text = source.bytes();
+  Spot begin;  // of the line
+  for (; begin.line < place.line; ++begin.line) {
+    const std::size_t newline = text.find('\n', begin.offset);
+    if (newline == std::string_view::npos) return begin.behind(text.size() - begin.offset);
+    begin.offset = newline + 1;
   }
-  const auto column =
-      std::clamp<std::size_t>(static_cast<std::size_t>(std::max(place.column, 1)), 1, rest.size() + 1);
-  return {rest.data() + column - 1, std::max(place.line, 1), static_cast<int>(column)};
+  return begin.behind(
+      std::min(static_cast<std::size_t>(std::max(place.column, 1)) - 1, text.size() - begin.offset));
 }
 
 std::size_t text_prefix(std::string_view bytes) {

@@ -1,6 +1,9 @@
 // What is wrong with a text, gathered while it is read and handed over in the order of its lines.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,13 +15,19 @@
 
 namespace selvage {
 
-// A place in the text; line and column count from 1, columns in bytes.
+// A place in a text; line and column count from 1, columns in bytes. It holds no pointer: a spot that is not
+// in the text is reported as the nearest one that is.
 struct Spot {
-  const char* at = nullptr;  // in Source::bytes(), the end of them included
+  std::size_t offset = 0;  // in Source::bytes(), the end of them included
   int line = 1;
   int column = 1;
 
   [[nodiscard]] TextPlace place() const { return {line, column}; }
+  // On the same line, `bytes` farther on.
+  [[nodiscard]] Spot behind(std::size_t bytes) const {
+    const auto room = static_cast<std::size_t>(std::numeric_limits<int>::max() - column);
+    return {offset + bytes, line, column + static_cast<int>(std::min(bytes, room))};
+  }
 };
 
 // The spot of a place in the text of `source`, whose lines end with LF; the text's end where there is no such

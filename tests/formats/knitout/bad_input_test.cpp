@@ -22,6 +22,30 @@ struct Bad {
 // Behind the four lines of the head; loops on f1, f2 and f3 by lines 5 to 7.
 const std::string three = head + "knit + f1 1\nknit + f2 1\nknit + f3 1\n";
 
+std::string again(const std::string& line, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += line;
+  return text;
+}
+
+std::string all_carriers(int count) {
+  std::string names;
+  for (int i = 1; i <= count; ++i) names += " " + std::to_string(i);
+  return names;
+}
+
+// Forty needles of each bed with thirty loops each, and a racking that moves them all past each other.
+std::string passings() {
+  std::string text = head;
+  for (const bool moves : {true, false})
+    for (int needle = 1; needle <= 40; ++needle) {
+      const std::string name = std::to_string(needle);
+      text += again("tuck + f" + name + " 1\n", 30);
+      if (moves) text += "xfer f" + name + " b" + name + "\n";
+    }
+  return text + "rack -24\nrack 24\nknit + f50 1\n";
+}
+
 std::vector<Bad> bad_programs() {
   constexpr Kind unsupported = Kind::unsupported;
   return {
@@ -97,6 +121,32 @@ std::vector<Bad> bad_programs() {
        {5, 1},
        "20000 rows by 1200 wales are beyond",
        Kind::limit},
+      {"a_chart_of_few_loops",
+       head + again("knit + f1 1\nknit + f1200 1\n", 2500),
+       {5, 1},
+       "2500 rows by 1200 wales are beyond the 2500000 stitches that the chart of 5000 loops may have",
+       Kind::limit},
+      {"tucks_on_one_needle",
+       head + again("tuck + f1 1\n", 33),
+       {37, 8},
+       "f1 would hold 33 loops, and a needle holds at most 32",
+       Kind::limit},
+      {"moved_onto_one_needle",
+       head + again("tuck + f1 1\n", 20) + again("tuck + b1 1\n", 20) + "xfer f1 b1\n",
+       {45, 9},
+       "b1 would hold 40 loops",
+       Kind::limit},
+      {"carriers_in_header",
+       ";!knitout-2\n;;Carriers:" + all_carriers(1001) + "\nin 1\nknit + f1 1\n",
+       {2, 3906},
+       "a machine has at most 1000 carriers",
+       Kind::limit},
+      {"carriers_without_header",
+       ";!knitout-2\nin" + all_carriers(1001) + "\nknit + f1 1\n",
+       {2, 3897},
+       "a machine has at most 1000 carriers",
+       Kind::limit},
+      {"passings", passings(), {2447, 1}, "have moved loops past each other", Kind::limit},
   };
 }
 

@@ -637,6 +637,16 @@ const std::vector<Case> other_cases = {
      {{5, 1, "equals the one before"}}},
     {"line_short", "fabric 1\npiece p\n line a 0 0 1\nend\n", {{3, 14, "missing"}}},
     {"line_no_length", "fabric 1\npiece p\n line a 1 1 1 1\nend\n", {{3, 2, "no length"}}},
+    {"blocks_deep",
+     [] {
+       std::string text = "fabric 1\n";
+       for (int i = 0; i < 40'000; ++i) text += "block b\n";
+       return text;
+     }(),
+     {{34, 1, "blocks stand in each other at most 32 deep"}}},
+    {"lists_of_threads",
+     with_thread("weave\n warp 600000t 2 pitch 1\n weft 600000t 2 pitch 1\n draft plain\nend\n"),
+     {{7, 7, "from 1 to 1000000 of them in all"}}},
     {"cell_flat", "fabric 1\ncell 0 0 0 1 1 0\nend\n", {{2, 1, "no volume"}}},
     {"cell_short", "fabric 1\ncell 0 0 0 1 1\nend\n", {{2, 15, "missing"}}},
     {"cell_twice",
