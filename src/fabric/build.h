@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/new_name.h"
 #include "fabric/inside.h"
 #include "fabric/model.h"
 #include "fabric/plan.h"
@@ -193,7 +194,7 @@ class YarnBuilder {
   std::shared_ptr<const Fabric> own_fabric_;
   std::vector<std::shared_ptr<const YarnBuilder>> insides_;
   std::vector<std::unique_ptr<Placed>> placed_;
-  std::set<std::string> prefixes_;
+  TakenNames prefixes_;
   std::vector<std::optional<Repeat>> repeats_of_uses_;
 };
 

@@ -107,9 +107,7 @@ void YarnBuilder::add_use(const Use& use, Diagnostics& diagnostics) {
   const Work work{product_of(copies, within->count()), product_of(copies, within->work_.points),
                   within->work_.longest};
   if (!take_on(work, use.place, diagnostics)) return;
-  std::string prefix = use.as.empty() ? use.what : use.as;
-  for (int number = 2; !prefixes_.insert(prefix).second; ++number)
-    prefix = fmt::format("{}_{}", use.as.empty() ? use.what : use.as, number);
+  const std::string prefix = new_name(prefixes_, use.as.empty() ? use.what : use.as);
   for (int j = 0; j < use.repeats[1]; ++j)
     for (int i = 0; i < use.repeats[0]; ++i) {
       Placement copy;

@@ -11,17 +11,18 @@ namespace selvage::fabric {
 
 namespace {
 
-Status check_size(long long picks, long long ends) {
-  if (picks <= most_crossings / ends) return {};
+Status check_size(long long picks, long long ends, long long most) {
+  if (picks <= most / ends) return {};
   return error(Kind::limit,
-               fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks,
-                           ends, most_crossings));
+               fmt::format("a draft of {} x {} crossings is larger than the {} that are possible{}", picks,
+                           ends, most, most < most_crossings ? " without its rows" : ""));
 }
 
 // The square or oblong repeat whose crossings `is_on_top(pick, end)` tells.
 template <class Rule>
-Result<Drawdown> filled(long long picks, long long ends, Rule is_on_top) {
-  if (Status fits = check_size(picks, ends); !fits) return fits.error();
+Result<Drawdown> filled(long long picks, long long ends, Rule is_on_top,
+                        long long most = most_crossings_by_numbers) {
+  if (Status fits = check_size(picks, ends, most); !fits) return fits.error();
   Drawdown drawdown{static_cast<int>(picks), static_cast<int>(ends), {}};
   drawdown.bits.reserve(static_cast<std::size_t>(picks * ends));
   for (long long pick = 0; pick < picks; ++pick)
@@ -40,10 +41,12 @@ Result<Drawdown> from_rows(const std::vector<std::string>& rows) {
       return error(Kind::malformed,
                    fmt::format("row {} of the draft has a sign that is neither 0 nor 1", i + 1));
   }
-  return filled(static_cast<long long>(rows.size()), static_cast<long long>(width),
-                [&](long long pick, long long end) {
-                  return rows[static_cast<std::size_t>(pick)][static_cast<std::size_t>(end)] == '1';
-                });
+  return filled(
+      static_cast<long long>(rows.size()), static_cast<long long>(width),
+      [&](long long pick, long long end) {
+        return rows[static_cast<std::size_t>(pick)][static_cast<std::size_t>(end)] == '1';
+      },
+      most_crossings);
 }
 
 // Which end each pick of an irregular satin has on top; empty: it is a regular one.
@@ -87,7 +90,7 @@ Result<Drawdown> twill(const Draft& draft) {
     if (run < 1) return error(Kind::malformed, "the counts of a twill are 1 or more");
     period += run;
   }
-  if (Status fits = check_size(period, period); !fits) return fits.error();
+  if (Status fits = check_size(period, period, most_crossings_by_numbers); !fits) return fits.error();
   std::string one_pick;
   for (std::size_t i = 0; i < runs.size(); ++i)
     one_pick.append(static_cast<std::size_t>(runs[i]), i % 2 == 0 ? '1' : '0');

@@ -16,8 +16,9 @@
 
 namespace selvage::fabric {
 
-// A repeat of more crossings is refused.
-inline constexpr long long most_crossings = 100'000'000;
+// A repeat of more crossings is refused; of one that is said by a few numbers (twill, satin, basket) the
+// second counts, more than five hundred shafts: such a text can have thousands of them.
+inline constexpr long long most_crossings = 100'000'000, most_crossings_by_numbers = 300'000;
 
 // One repeat, `picks` wefts by `ends` warps, both at least 1.
 struct Drawdown {
@@ -46,7 +47,7 @@ std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& dr
 // Fails (malformed) on rows that are empty, ragged or hold other signs, on counts below 1, an odd number of
 // them, and on a satin whose step does not lie within 2..n-2 or has a divisor in common with n, or that has
 // none; (limit) on a repeat of more than
-// 100 million crossings; (unsupported) on a draft that is still the name of a file: whoever reads files puts
+// most_crossings; (unsupported) on a draft that is still the name of a file: whoever reads files puts
 // its rows in.
 Result<Drawdown> drawdown_of(const Draft& draft);
 

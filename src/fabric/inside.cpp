@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
+#include <unordered_map>
 
 #include "fabric/plan.h"
 
@@ -135,23 +137,39 @@ const NamedBlock* find_block(const Fabric& fabric, std::string_view name) {
   return find_named(fabric.blocks, name);
 }
 
+namespace {
+
+void add_used(const Fabric& fabric, std::set<std::string_view>& names) {
+  for (const Item& item : fabric.items)
+    if (const auto* const use = std::get_if<Use>(&item)) names.insert(use->what);
+  for (const NamedBlock& block : fabric.blocks) add_used(*block.fabric, names);
+}
+
+}  // namespace
+
 Fabric inside(const Fabric& user, const NamedBlock& block) {
   const Fabric& around = block.home != nullptr ? *block.home : user;
   Fabric fabric = *block.fabric;
-  const auto add_missing = [](auto& own, const auto& outer) {
+  const auto add_missing = [](auto& own, const auto& outer, const auto& is_needed) {
     const std::size_t count = own.size();
     for (const auto& thing : outer) {
+      if (!is_needed(thing)) continue;
       const auto end = own.begin() + static_cast<std::ptrdiff_t>(count);
       if (std::none_of(own.begin(), end, [&](const auto& o) { return o.name == thing.name; }))
         own.push_back(thing);
     }
   };
-  add_missing(fabric.threads, around.threads);
-  add_missing(fabric.materials, around.materials);
-  add_missing(fabric.outlines, around.outlines);
+  const auto always = [](const auto&) { return true; };
+  add_missing(fabric.threads, around.threads, always);
+  add_missing(fabric.materials, around.materials, always);
+  add_missing(fabric.outlines, around.outlines, always);
   // What those that it did not define itself mean is decided where they stand.
   const std::size_t own_blocks = fabric.blocks.size();
-  add_missing(fabric.blocks, around.blocks);
+  // A text may have thousands of blocks, of which each uses few.
+  std::set<std::string_view> used;
+  add_used(fabric, used);
+  add_missing(fabric.blocks, around.blocks,
+              [&](const NamedBlock& outer) { return used.contains(outer.name); });
   std::shared_ptr<Fabric> home;
   for (std::size_t i = own_blocks; i < fabric.blocks.size(); ++i) {
     if (fabric.blocks[i].home != nullptr) continue;
@@ -176,35 +194,57 @@ constexpr std::uint64_t most_copies = 1'000'000;
 
 class UseCheck {
  public:
-  // How many copies of blocks are in the fabric, all levels together.
-  Result<std::uint64_t> copies_in(const Fabric& fabric) {
+  // Copies of blocks in a fabric, all levels together, and how many levels there are.
+  struct Inside {
+    std::uint64_t copies = 0;
+    std::size_t depth = 0;
+  };
+  Result<Inside> look_into(const Fabric& fabric) { return look_into(Text{&fabric, nullptr}); }
+
+ private:
+  static constexpr std::size_t deepest = 100;  // each level is built within the one above it
+
+  // A fabric and what stands round it: names that it does not define mean what they mean there.
+  struct Text {
+    const Fabric* fabric;
+    const Text* around;
+  };
+
+  static Message too_deep() {
+    return error(Kind::limit, fmt::format("more than {} blocks use each other in turn", deepest));
+  }
+
+  Result<Inside> look_into(const Text& text) {
     // Its own, used or not.
-    for (const NamedBlock& block : fabric.blocks)
-      if (block.home == nullptr)
-        if (Result<std::uint64_t> within = copies_of(fabric, block); !within) return within;
-    std::uint64_t all = 0;
-    for (const Item& item : fabric.items) {
+    for (const NamedBlock& block : text.fabric->blocks)
+      if (Result<Inside> within = look_into(text, block); !within) return within;
+    Inside all;
+    for (const Item& item : text.fabric->items) {
       const auto* const use = std::get_if<Use>(&item);
-      const NamedBlock* const block =
-          use != nullptr && !use->is_file ? find_block(fabric, use->what) : nullptr;
+      if (use == nullptr || use->is_file) continue;
+      const NamedBlock* block = nullptr;
+      const Text* home = &text;
+      for (; home != nullptr && (block = find(*home->fabric, use->what)) == nullptr; home = home->around) {
+      }
       if (block == nullptr) continue;
-      const Result<std::uint64_t> within = copies_of(fabric, *block);
+      const Result<Inside> within = look_into(*home, *block);
       if (!within) return within.error().placed(use->place);
+      all.depth = std::max(all.depth, 1 + within->depth);
+      if (all.depth > deepest) return too_deep().placed(use->place);
       const std::uint64_t copies = product_of(static_cast<std::uint64_t>(use->repeats[0]),
                                               static_cast<std::uint64_t>(use->repeats[1]));
-      all = sum_of(all, product_of(copies, sum_of(1, *within)));
-      if (all > most_copies)
+      all.copies = sum_of(all.copies, product_of(copies, sum_of(1, within->copies)));
+      if (all.copies > most_copies)
         return error(Kind::limit,
                      fmt::format("with all that they use in turn these would be {:.2g} copies of blocks; a "
                                  "fabric may have {}",
-                                 static_cast<double>(all), most_copies))
+                                 static_cast<double>(all.copies), most_copies))
             .placed(use->place);
     }
     return all;
   }
 
- private:
-  Result<std::uint64_t> copies_of(const Fabric& around, const NamedBlock& block) {
+  Result<Inside> look_into(const Text& home, const NamedBlock& block) {
     const Fabric* const key = block.fabric.get();
     if (const auto known = known_.find(key); known != known_.end()) return known->second;
     const auto open = std::find_if(open_.begin(), open_.end(),
@@ -215,14 +255,25 @@ class UseCheck {
       return error(Kind::malformed,
                    fmt::format("blocks use each other in a circle: {}'{}'", circle, block.name));
     }
+    if (open_.size() == deepest) return too_deep();
     open_.push_back(&block);
-    Result<std::uint64_t> copies = copies_in(inside(around, block));
+    Result<Inside> found = look_into(Text{block.fabric.get(), &home});
     open_.pop_back();
-    if (copies) known_[key] = *copies;
-    return copies;
+    if (found) known_[key] = *found;
+    return found;
   }
 
-  std::map<const Fabric*, std::uint64_t> known_;
+  // Null: it has none of this name itself.
+  const NamedBlock* find(const Fabric& fabric, const std::string& name) {
+    auto& names = names_[&fabric];
+    if (names.empty())
+      for (const NamedBlock& block : fabric.blocks) names.try_emplace(block.name, &block);
+    const auto found = names.find(name);
+    return found == names.end() ? nullptr : found->second;
+  }
+
+  std::map<const Fabric*, Inside> known_;
+  std::map<const Fabric*, std::unordered_map<std::string_view, const NamedBlock*>> names_;
   std::vector<const NamedBlock*> open_;
 };
 
@@ -253,8 +304,8 @@ Status check_materials(const Fabric& fabric, std::map<std::string, const Materia
 Status check_uses(const Fabric& fabric) {
   std::map<std::string, const Material*> materials;
   if (Status fits = check_materials(fabric, materials); !fits) return fits;
-  const Result<std::uint64_t> copies = UseCheck().copies_in(fabric);
-  return copies ? Status() : Status(copies.error());
+  const Result<UseCheck::Inside> found = UseCheck().look_into(fabric);
+  return found ? Status() : Status(found.error());
 }
 
 }  // namespace selvage::fabric

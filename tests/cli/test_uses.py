@@ -84,6 +84,44 @@ class Uses(Case):
         self.write("in/main.txt", "fabric 1\nuse file ../outside.txt\nend\n")
         self.succeeds("convert", text, "--allow-outside", "--to", "iges", "-o", self.out)
 
+    def test_files_that_name_each_other_again_and_again_end_soon(self):
+        """Two files a level, each used by both of the level above: 2^14 readings of files of 80 bytes."""
+        levels = 14
+        for level in range(levels):
+            for side in "ab":
+                self.write(f"deep/L{level}{side}.txt", f"fabric 1\nuse file L{level + 1}a.txt as x\nend\nuse file L{level + 1}b.txt as y\nend\n")
+        for side in "ab":
+            self.write(f"deep/L{levels}{side}.txt", WEAVE)
+        for command in ("check", "info"):
+            said = self.fails(1, command, self.folder / "deep" / "L0a.txt")
+            self.assertRegex(said, r"L0a\.txt:[24]:1: error: the file 'L1[ab]\.txt' cannot be used: .* more than 10000 files")
+            self.assertEqual(said.count("error:"), 1, said)
+
+    def test_one_file_of_points_for_each_yarn(self):
+        rows = "".join(f"t{i},{x / 10},{i},0\n" for i in range(50) for x in range(20))
+        self.write("tows.csv", "yarn,x,y,z\n" + rows)
+        yarns = "".join(f"yarn y{i} a\n points tows.csv yarn t{i}\nend\n" for i in range(50))
+        text = self.write("tows.txt", "fabric 1\nthread a\n diameter 0.2\nend\n" + yarns)
+        self.succeeds("info", text, "--sandbox", "require")
+        self.write("long.csv", "yarn,x,y,z\n" + "".join(f"t,{x / 10},0,0\n" for x in range(20000)))
+        again = "".join(f"yarn y{i} a\n points long.csv\nend\n" for i in range(200))
+        text = self.write("again.txt", "fabric 1\nthread a\n diameter 0.2\nend\n" + again)
+        said = self.fails(1, "info", text)
+        self.assertRegex(said, r"again\.txt:\d+:\d+: error: no yarn in the file 'long\.csv': the files that this input names are read again and again")
+
+    def test_many_blocks_and_uses(self):
+        """Names of one kind do not cost the square of their number: a thousand of each are there at once."""
+        yarn = "yarn y a\n path\n  0 0 0\n  1 0 0\n end\nend\n"
+        head = "fabric 1\nthread a\n diameter 0.2\nend\n"
+        chain = head + "block b0\n" + yarn + "end\n" + "".join(f"block b{i}\nuse b{i - 1}\nend\nend\n" for i in range(1, 1000))
+        said = self.fails(1, "info", self.write("chain.txt", chain + "use b999\nend\n"))
+        self.assertRegex(said, r"error: more than 100 blocks use each other in turn")
+        same = head + "block b\n" + yarn + "end\n" + "".join(f"use b\nplace 0 {i} 0\nend\n" for i in range(1000))
+        names = self.folder / "names.json"
+        self.succeeds("info", self.write("same.txt", same), "--report", names)
+        yarns = [one["name"] for one in json.loads(names.read_text())["inputs"][0]["yarns"]]
+        self.assertEqual(yarns, ["b.y"] + [f"b_{i}.y" for i in range(2, 1001)])
+
     def test_overlaps_name_the_yarns_and_the_place(self):
         text = self.write("two.txt", USES.replace("0.72", "0.3"))
         said = self.fails(3, "check", text)
