@@ -120,6 +120,22 @@ TEST(Draft, ByNumbersIsOfFewShafts) {
   }
 }
 
+// A few numbers are no reason to fill millions of crossings.
+TEST(Draft, ByNumbersIsOfFewShafts) {
+  for (const auto form : {Draft::Form::twill, Draft::Form::basket, Draft::Form::satin}) {
+    Draft draft;
+    draft.form = form;
+    draft.a = 900;
+    draft.b = form == Draft::Form::satin ? 7 : 9000;
+    const Result<Drawdown> made = drawdown_of(draft);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().kind, Kind::limit);
+    draft.a = 250;
+    draft.b = form == Draft::Form::satin ? 3 : 250;
+    EXPECT_TRUE(drawdown_of(draft));
+  }
+}
+
 TEST(Draft, RefusesWhatIsNoDraft) {
   const int huge = std::numeric_limits<int>::max();
   const std::vector<std::pair<Draft, Kind>> cases{{rows({}), Kind::malformed},
