@@ -103,7 +103,9 @@ class Build:
 def packages_of(files):
     """Debian's packages that the files are from. /lib is a link to /usr/lib, and dpkg has either name."""
     names = {name for path in files for name in (path, os.path.realpath(path))}
-    names |= {name[4:] for name in names if name.startswith("/usr/lib")} | {"/usr" + n for n in names if n.startswith("/lib")}
+    names |= {name[4:] for name in names if name.startswith("/usr/lib")} | {
+        "/usr" + n for n in names if n.startswith("/lib")
+    }
     found = subprocess.run(["dpkg-query", "--search", *sorted(names)], capture_output=True, text=True).stdout
     owner = {path: package for package, path in re.findall(r"^([\w.+-]+)(?::\w+)?: (/.*)$", found, re.MULTILINE)}
     for path in files:
@@ -144,7 +146,9 @@ def package(name, version, licence, **more):
 
 def debian_package(name):
     fields = "${Version}\t${Architecture}\t${source:Package}\t${source:Version}\t${Homepage}\n"
-    version, processor, source, its_version, page = output_of("dpkg-query", "-W", "-f", fields, name).split("\n")[0].split("\t")
+    version, processor, source, its_version, page = (
+        output_of("dpkg-query", "-W", "-f", fields, name).split("\n")[0].split("\t")
+    )
     system = distribution()
     if source not in LICENCES:
         raise Failure(f"the licence of Debian's source package '{source}' is missing in LICENCES of {__file__}")
@@ -155,7 +159,9 @@ def debian_package(name):
         supplier=f"Organization: {system['NAME']}",
         sourceInfo=f"built from {source} {its_version} of {system['PRETTY_NAME']}",
         primaryPackagePurpose="LIBRARY",
-        externalRefs=locator("deb", f"{system['ID']}/{name}", version, arch=processor, distro=system["VERSION_CODENAME"]),
+        externalRefs=locator(
+            "deb", f"{system['ID']}/{name}", version, arch=processor, distro=system["VERSION_CODENAME"]
+        ),
         **({"homepage": page} if page else {}),
     )
 

@@ -23,7 +23,11 @@ PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 
 def commands(page):
     """The lines of a page's blocks of commands."""
-    return [line for block in re.findall(r"```sh\n(.*?)```", (REPOSITORY / page).read_text(), re.DOTALL) for line in block.splitlines()]
+    return [
+        line
+        for block in re.findall(r"```sh\n(.*?)```", (REPOSITORY / page).read_text(), re.DOTALL)
+        for line in block.splitlines()
+    ]
 
 
 def packages():
@@ -38,7 +42,9 @@ class Package(unittest.TestCase):
         kept = os.environ.get("SELVAGE_ROOT")
         cls.root = pathlib.Path(kept or tempfile.mkdtemp(prefix="selvage-root-"))
         if not (cls.root / "etc/debian_version").exists():
-            subprocess.run(["debootstrap", "--variant=minbase", "bookworm", cls.root], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run(
+                ["debootstrap", "--variant=minbase", "bookworm", cls.root], check=True, stdout=subprocess.DEVNULL
+            )
         if not kept:
             cls.addClassCleanup(shutil.rmtree, cls.root)
         # It reaches the archive in the way that this machine does.
@@ -54,15 +60,33 @@ class Package(unittest.TestCase):
     @classmethod
     def inside(cls, *command, folder="/", code=0):
         """Runs a command in the root; its standard output."""
-        done = subprocess.run(["chroot", cls.root, "env", "-i", "-C", folder, "HOME=/root", f"PATH={PATH}", "LC_ALL=C",
-                               "DEBIAN_FRONTEND=noninteractive", *command], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        done = subprocess.run(
+            [
+                "chroot",
+                cls.root,
+                "env",
+                "-i",
+                "-C",
+                folder,
+                "HOME=/root",
+                f"PATH={PATH}",
+                "LC_ALL=C",
+                "DEBIAN_FRONTEND=noninteractive",
+                *command,
+            ],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
         if done.returncode != code:
             raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}\n{done.stderr}")
         return done.stdout
 
     def assert_bare(self):
         self.inside("rm", "-rf", "/var/cache/man")  # the pages that man-db keeps as it showed them
-        self.assertEqual(self.inside("find", "/", "-xdev", "-iname", "*selvage*", "-not", "-path", "/root/selvage.deb"), "")
+        self.assertEqual(
+            self.inside("find", "/", "-xdev", "-iname", "*selvage*", "-not", "-path", "/root/selvage.deb"), ""
+        )
 
     def test_from_nothing_to_nothing(self):
         self.assert_bare()
@@ -73,7 +97,9 @@ class Package(unittest.TestCase):
         self.completes()
         self.has_its_bill_of_materials()
         self.assertIn("/usr/lib/selvage/three.module.min.js", files)
-        programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/")) and not name.endswith(".js")]
+        programs = [
+            name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/")) and not name.endswith(".js")
+        ]
         self.assertEqual(len(programs), 11)
         for name in programs:
             if name not in ("/usr/bin/selvage-homogenize", "/usr/bin/selvage-permeability"):
@@ -92,7 +118,9 @@ class Package(unittest.TestCase):
         beside = self.package.with_suffix(".spdx.json").read_text()
         self.assertEqual((self.root / "usr/share/doc/selvage/selvage.spdx.json").read_text(), beside)
         stated = {package["name"] for package in json.loads(beside)["packages"]}
-        depends = subprocess.run(["dpkg-deb", "-f", self.package, "Depends"], check=True, capture_output=True, text=True).stdout
+        depends = subprocess.run(
+            ["dpkg-deb", "-f", self.package, "Depends"], check=True, capture_output=True, text=True
+        ).stdout
         wanted = {word.split()[0] for word in depends.split(",")}
         self.assertGreater(len(wanted), 5)
         self.assertEqual(wanted - stated, set())
@@ -118,7 +146,9 @@ class Package(unittest.TestCase):
         self.assertIn("*ELEMENT", (self.root / "root/out/weave.inp").read_text().upper())
         self.inside("selvage", "view", weave, "--size", "80x60", "-o", f"{out}/weave.png")
         self.inside("selvage", "view", weave, "-o", f"{out}/weave.html")
-        self.inside("selvage", "convert", f"{SAMPLES}/plain_by_params.txt", "--set", "sett=2*11", "-o", f"{out}/params.igs")
+        self.inside(
+            "selvage", "convert", f"{SAMPLES}/plain_by_params.txt", "--set", "sett=2*11", "-o", f"{out}/params.igs"
+        )
         self.inside("rm", "-r", out)
 
     def picture(self, name):
@@ -142,7 +172,9 @@ class Package(unittest.TestCase):
         self.inside("apt-get", "install", "-q", "-y", "--no-install-recommends", "calculix-ccx", "python3-numpy")
         page = "src/cli/first-steps.md"
         (self.root / "root/steps").mkdir()
-        for name, text in re.findall(r"ave\s+it\s+as\s+`([\w.]+)`:\n\n```\n(.*?)```", (REPOSITORY / page).read_text(), re.DOTALL):
+        for name, text in re.findall(
+            r"ave\s+it\s+as\s+`([\w.]+)`:\n\n```\n(.*?)```", (REPOSITORY / page).read_text(), re.DOTALL
+        ):
             (self.root / "root/steps" / name).write_text(text)
         lines = commands(page)
         self.assertEqual({shlex.split(line)[0] for line in lines}, {"selvage", "selvage-homogenize"})
@@ -158,14 +190,29 @@ class Package(unittest.TestCase):
 
     def a_program_of_ones_own(self):
         """find_package(Selvage) with what the package suggests: the program of the page writes what the installed one does."""
-        self.inside("apt-get", "install", "-q", "-y", "--no-install-recommends", "cmake", "make", "g++", "libeigen3-dev", "libmd-dev",
-                    "zlib1g-dev")
+        self.inside(
+            "apt-get",
+            "install",
+            "-q",
+            "-y",
+            "--no-install-recommends",
+            "cmake",
+            "make",
+            "g++",
+            "libeigen3-dev",
+            "libmd-dev",
+            "zlib1g-dev",
+        )
         self.inside("cmake", "-S", "/usr/share/selvage/samples/api", "-B", "/root/api")
         self.inside("cmake", "--build", "/root/api")
         moment = "SOURCE_DATE_EPOCH=1700000000"
         self.inside("env", moment, "/root/api/plain_weave", "plain.igs", folder="/root/api")
-        self.inside("env", moment, "selvage", "convert", f"{SAMPLES}/weave_plain.txt", "-o", "/root/api/program/plain.igs")
-        self.assertEqual((self.root / "root/api/plain.igs").read_bytes(), (self.root / "root/api/program/plain.igs").read_bytes())
+        self.inside(
+            "env", moment, "selvage", "convert", f"{SAMPLES}/weave_plain.txt", "-o", "/root/api/program/plain.igs"
+        )
+        self.assertEqual(
+            (self.root / "root/api/plain.igs").read_bytes(), (self.root / "root/api/program/plain.igs").read_bytes()
+        )
         self.inside("rm", "-r", "/root/api")
 
 

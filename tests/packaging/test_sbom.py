@@ -64,7 +64,9 @@ class Sbom(unittest.TestCase):
         }
 
     def test_it_keeps_to_the_schema(self):
-        validator = jsonschema.Draft7Validator(json.loads(SCHEMA.read_text()), format_checker=jsonschema.FormatChecker())
+        validator = jsonschema.Draft7Validator(
+            json.loads(SCHEMA.read_text()), format_checker=jsonschema.FormatChecker()
+        )
         self.assertEqual([error.message for error in validator.iter_errors(self.document)], [])
         broken = {**self.document, "packages": [{"name": "nothing"}]}
         self.assertNotEqual(list(validator.iter_errors(broken)), [])
@@ -112,9 +114,15 @@ class Sbom(unittest.TestCase):
         # dpkg has files of /lib, which is a link to /usr/lib, by either name.
         names = [name for file in files.values() for name in (file, file.removeprefix("/usr"))]
         answers = subprocess.run(["dpkg", "-S", *names], capture_output=True, text=True).stdout
-        owner = {file.removeprefix("/usr"): package for package, file in re.findall(r"^([^:]+):.*? (/.*)$", answers, re.M)}
+        owner = {
+            file.removeprefix("/usr"): package for package, file in re.findall(r"^([^:]+):.*? (/.*)$", answers, re.M)
+        }
         self.assertEqual(
-            {name: file for name, file in files.items() if owner[file.removeprefix("/usr")] not in self.linked("DYNAMIC_LINK")},
+            {
+                name: file
+                for name, file in files.items()
+                if owner[file.removeprefix("/usr")] not in self.linked("DYNAMIC_LINK")
+            },
             {},
         )
 
