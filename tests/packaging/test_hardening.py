@@ -14,7 +14,7 @@ import unittest
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SELVAGE_BUILD", REPOSITORY / "build")).resolve()
 PROGRAMS = ("selvage", "selvage-tetgen")
-FLAGS = {"-O2", "-D_FORTIFY_SOURCE=3", "-fstack-protector-strong", "-fPIC"}
+FLAGS = {"-O2", "-D_FORTIFY_SOURCE=3", "-fstack-protector-strong"}
 OF_PROCESSOR = {"x86_64": {"-fstack-clash-protection", "-fcf-protection"}}
 
 
@@ -109,6 +109,7 @@ class Hardening(unittest.TestCase):
         self.assertGreater(len(self.commands), 100)
         for entry in self.commands:
             self.assertEqual(wanted - flags_of(entry), set(), entry["file"])
+            self.assertTrue(flags_of(entry) & {"-fPIC", "-fPIE"}, entry["file"])
             self.assertEqual({f for f in flags_of(entry) if f.startswith(("-fno-stack", "-O0", "-no-pie"))}, set())
 
 
