@@ -61,4 +61,4 @@ compile() {
 # python_files, shell_files: the sources in that language, by ending or first line.
 with_first_line() { grep -rlE -m 1 "^#!.*$1" .ci scripts tests samples --exclude='*.py'; }
 python_files() { { find scripts tests samples -name '*.py' && with_first_line 'python3?$'; } | LC_ALL=C sort; }
-shell_files() { { echo scripts/common.sh && with_first_line '(/sh|bash)$'; } | LC_ALL=C sort; }
+shell_files() { { printf "%s\n" scripts/common.sh .ci/stages.sh && with_first_line '(/sh|bash)$'; } | LC_ALL=C sort; }

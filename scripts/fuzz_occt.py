@@ -17,7 +17,7 @@ import fuzz_page
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "cli"))
-from step_damage import Base  # noqa: E402
+from step_damage import Base
 
 SECONDS, MEGABYTES = 20, 2000
 # What a run takes longer than its limit: the end of a worker, and the next one's begin, on a busy machine.

@@ -8,7 +8,7 @@ import signal
 import time
 import unittest
 
-from program import Case, GRID, RING, SAMPLES, children_of, environment, files_below, run, seconds_of, start
+from program import Case, GRID, RING, SAMPLES, children_of, files_below, run, seconds_of, start
 
 
 class Isolation(Case):

@@ -17,7 +17,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from program import Case, GRID, PROGRAM, RING, children_of, environment, files_below, run, terminal  # noqa: E402
+from program import Case, GRID, PROGRAM, RING, children_of, environment, files_below, run, terminal
 
 TRAITOR = os.path.abspath(os.environ["SELVAGE_TRAITOR"])
 README = pathlib.Path(__file__).with_name("README.md")

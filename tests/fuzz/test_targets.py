@@ -13,7 +13,7 @@ FUZZ = ROOT / "tests" / "fuzz"
 FREE = {"mesh", "placing", "expressions"}
 
 sys.path.insert(0, str(ROOT / "scripts"))
-from fuzz_seeds import EXTENSIONS  # noqa: E402
+from fuzz_seeds import EXTENSIONS
 
 
 def targets():
