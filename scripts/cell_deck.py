@@ -1,6 +1,7 @@
 """The deck of a unit cell as `selvage mesh` writes it, read for scripts/homogenize: nodes, elements with their materials,
-conditions and steps."""
+conditions and steps. It may come from anyone: nothing beside it is read but the mesh that it includes."""
 
+import math
 import pathlib
 import re
 
@@ -10,8 +11,59 @@ import cell_cohesive
 from cell_elements import EDGES, PAIRS, frames, matrices, tetrahedron_shapes
 
 
+class BadDeck(Exception):
+    """It cannot be used, for what the text says."""
+
+
 class ForeignElement(Exception):
     """One that nothing is known of here."""
+
+
+# What wrong words and numbers of a deck lead to while it is read and computed with.
+WRONG_NUMBERS = (ValueError, LookupError, TypeError, ArithmeticError, numpy.linalg.LinAlgError)
+
+LARGEST = 1 << 30  # bytes, with what it includes
+LARGEST_SET = 100_000_000
+MOST_INCLUDED = 8
+
+# Without blanks, as CalculiX reads them. Others may open files or load libraries.
+KEYWORDS = set(
+    "HEADING NODE NSET ELEMENT ELSET MATERIAL ELASTIC EXPANSION DENSITY CONDUCTIVITY SPECIFICHEAT ORIENTATION DISTRIBUTION "
+    "DISTRIBUTIONTABLE SOLIDSECTION COHESIVESECTION SURFACE TIE EQUATION BOUNDARY INITIALCONDITIONS AMPLITUDE TRANSFORM "
+    "DAMAGEINITIATION DAMAGEEVOLUTION STEP ENDSTEP STATIC HEATTRANSFER TEMPERATURE NODEFILE ELFILE NODEPRINT ELPRINT OUTPUT "
+    "NODEOUTPUT ELEMENTOUTPUT ENERGYOUTPUT".split()
+)
+
+
+def reason(failure):
+    return f"{failure} is missing" if isinstance(failure, KeyError) else str(failure)
+
+
+def grow(names, others):
+    """Sets of sets may double with every line."""
+    if len(names) + len(others) > LARGEST_SET:
+        raise ValueError(f"a set of more than {LARGEST_SET} numbers")
+    names.extend(others)
+
+
+def finite(word):
+    value = float(word)
+    if not math.isfinite(value):
+        raise ValueError(f"{word} is no number")
+    return value
+
+
+def check_keyword(line, place):
+    """CalculiX passes over blanks and the case of letters."""
+    words = "".join(line.split()).upper().split(",")
+    if not words[0].startswith("*") or words[0].startswith("**"):
+        return
+    if words[0][1:] not in KEYWORDS:
+        raise BadDeck(f"{place}: {words[0][:40]} is no keyword of a deck of a unit cell")
+    for word in words[1:]:
+        name, _, value = word.partition("=")
+        if name in ("INPUT", "FILE") or value.startswith("@"):
+            raise BadDeck(f"{place}: {word[:40]} names another file")
 
 
 class Parallelepiped:
@@ -30,10 +82,11 @@ def cell_of(rows):
 
 
 class Deck:
-    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps. Raises ForeignElement."""
+    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps. Raises ForeignElement, BadDeck."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
+        self.places, self.included, self.bytes = [], set(), 0
         self.lines = self._with_included(self.path)
         self.nodes, self.sets, self.elements, self.element_sets = {}, {}, {}, {}
         self.equations, self.materials, self.sections = [], {}, []
@@ -44,12 +97,43 @@ class Deck:
         self._read()
 
     def _with_included(self, path):
-        """The lines of a deck, with those of the mesh that it includes (--split-deck)."""
+        """The lines of a deck, with those of the mesh that it includes (--split-deck), which stands beside it."""
         lines = []
-        for line in path.read_text().splitlines():
-            found = re.fullmatch(r"\*INCLUDE\s*,\s*INPUT\s*=\s*(.*\S)\s*", line, re.IGNORECASE)
-            lines += self._with_included(path.parent / found[1]) if found else [line]
+        try:
+            if not path.is_file():
+                raise BadDeck(f"{path}: no regular file")
+            self.bytes += path.stat().st_size
+            if self.bytes > LARGEST:
+                raise BadDeck(f"{self.path}: more than {LARGEST} bytes, with what it includes")
+            text = path.read_text()
+        except OSError as failure:
+            raise BadDeck(f"{path}: cannot be read: {failure.strerror}") from failure
+        except UnicodeDecodeError as failure:
+            raise BadDeck(f"{path}: no text: byte {failure.start} is not UTF-8") from failure
+        self.included.add(path.resolve())
+        for number, line in enumerate(text.splitlines(), 1):
+            place = f"{path}:{number}"
+            found = re.fullmatch(r"\s*\*INCLUDE\s*,\s*INPUT\s*=\s*(.*\S)\s*", line, re.IGNORECASE)
+            if found:
+                lines += self._with_included(self._beside(found[1], place))
+                continue
+            check_keyword(line, place)
+            lines.append(line)
+            self.places.append(place)
         return lines
+
+    def _beside(self, name, place):
+        """The path of a file that is included: in the deck's folder, links followed, and once."""
+        path = self.path.parent / name
+        try:
+            target, folder = path.resolve(), self.path.parent.resolve()
+        except (OSError, RuntimeError, ValueError) as failure:  # loops of links, zero bytes
+            raise BadDeck(f"{place}: no such file") from failure
+        if folder not in target.parents:
+            raise BadDeck(f"{place}: the file that it includes is not in the folder of the deck: put it there")
+        if target in self.included or len(self.included) > MOST_INCLUDED:
+            raise BadDeck(f"{place}: the file that it includes is included already, or the last of more than {MOST_INCLUDED}")
+        return path
 
     def _blocks(self):
         """Keyword, parameters, data lines, line number, last comment before the keyword."""
@@ -59,13 +143,13 @@ class Deck:
                 last = line[2:].strip()
                 found = re.fullmatch(r"Cell: (.*)", last)
                 if found:
-                    self.cell = cell_of(numpy.array([float(v) for v in found[1].split()]).reshape(-1, 3))
+                    self.cell = cell_of(numpy.array([finite(v) for v in found[1].split()]).reshape(-1, 3))
                 found = re.fullmatch(r"Physics: (\w+)", last)
                 if found:
                     self.physics = found[1]
                 found = re.fullmatch(r"Strength: (\w+) (.*)", last)
                 if found:  # of the material that it stands in
-                    options["STRENGTH"] = (found[1], [float(v) for v in found[2].split()])
+                    options["STRENGTH"] = (found[1], [finite(v) for v in found[2].split()])
                 continue
             if line.startswith("*"):
                 if keyword:
@@ -79,67 +163,75 @@ class Deck:
             yield keyword, options, data, start, comment
 
     def _read(self):
-        material, step = None, None
-        for keyword, options, data, start, comment in self._blocks():
-            rows = [[word.strip() for word in line.split(",")] for line in data]
-            if keyword == "NODE":
-                numbers = [int(row[0]) for row in rows]
-                self.nodes.update((int(row[0]), tuple(map(float, row[1:4]))) for row in rows)
-                if "NSET" in options:
-                    self.sets.setdefault(options["NSET"], []).extend(numbers)
-            elif keyword == "NSET":
-                words = [word for row in rows for word in row if word]
-                names = self.sets.setdefault(options["NSET"], [])
-                for word in words:
-                    names.extend([int(word)] if word.isdigit() else self.sets.get(word, []))
-            elif keyword == "ELEMENT":
-                self._add_elements(options, rows)
-            elif keyword == "ELSET":
-                names = self.element_sets.setdefault(options["ELSET"], [])
-                for word in (word for row in rows for word in row if word):
-                    names.extend([int(word)] if word.isdigit() else self.element_sets.get(word, []))
-            elif keyword == "EQUATION":
-                self._add_equations(rows)
-            elif keyword == "MATERIAL":
-                material = self.materials.setdefault(options["NAME"], {})
-                if "STRENGTH" in options:
-                    material["strength"] = options["STRENGTH"]
-            elif keyword == "ELASTIC":
-                values = [float(word) for row in rows for word in row if word]
-                if options.get("TYPE") == "TRACTION":
-                    material["traction"] = values
-                else:
-                    material["stiffness"] = stiffness_of(values)
-            elif keyword == "EXPANSION":
-                values = [float(word) for row in rows for word in row if word]
-                material["expansion"] = values if len(values) > 1 else values * 3
-            elif keyword == "CONDUCTIVITY":
-                values = [float(word) for word in rows[0] if word]
-                material["conductivity"] = values if len(values) > 1 else values * 3
-            elif keyword == "SOLID SECTION":
-                self.sections.append((options["ELSET"], options["MATERIAL"], "ORIENTATION" in options))
-            elif keyword == "COHESIVE SECTION":
-                self.layers.append((options["ELSET"], options["MATERIAL"]))
-            elif keyword == "SURFACE":
-                self.surfaces[options["NAME"]] = (options.get("TYPE"), rows)
-            elif keyword == "TIE":
-                self.ties.append(rows[0])
-            elif keyword == "DISTRIBUTION":
-                for row in rows:
-                    if row[0]:
-                        self.axes[int(row[0])] = [float(v) for v in row[1:7]]
-            elif keyword == "STEP":
-                self.first_step = min(self.first_step, start)
-                step = {"name": comment, "drivers": {}, "temperature": 0.0}
-                self.steps.append(step)
-            elif keyword == "BOUNDARY" and step is not None:
-                for row in rows:
-                    if len(row) > 3 and row[3]:
-                        step["drivers"][row[0]] = float(row[3])
-                    elif row[0].isdigit() and row[0] not in self.held:
-                        self._hold(row)
-            elif keyword == "TEMPERATURE" and step is not None:
-                step["temperature"] = float(rows[0][1])
+        self.material, self.step = None, None
+        block = ("HEADING", None, None, 0, None)
+        try:
+            for block in self._blocks():
+                self._take(*block)
+        except WRONG_NUMBERS as failure:
+            place = self.places[block[3]] if self.places else self.path
+            raise BadDeck(f"{place}: *{block[0][:40]}, or what follows it, cannot be read: {reason(failure)}") from failure
+
+    def _take(self, keyword, options, data, start, comment):
+        rows = [[word.strip() for word in line.split(",")] for line in data]
+        if keyword == "NODE":
+            numbers = [int(row[0]) for row in rows]
+            self.nodes.update((int(row[0]), tuple(finite(word) for word in (row[1:4] + 3 * ["0"])[:3])) for row in rows)
+            if "NSET" in options:
+                self.sets.setdefault(options["NSET"], []).extend(numbers)
+        elif keyword == "NSET":
+            words = [word for row in rows for word in row if word]
+            names = self.sets.setdefault(options["NSET"], [])
+            for word in words:
+                grow(names, [int(word)] if word.isdigit() else self.sets.get(word, []))
+        elif keyword == "ELEMENT":
+            self._add_elements(options, rows)
+        elif keyword == "ELSET":
+            names = self.element_sets.setdefault(options["ELSET"], [])
+            for word in (word for row in rows for word in row if word):
+                grow(names, [int(word)] if word.isdigit() else self.element_sets.get(word, []))
+        elif keyword == "EQUATION":
+            self._add_equations(rows)
+        elif keyword == "MATERIAL":
+            self.material = self.materials.setdefault(options["NAME"], {})
+            if "STRENGTH" in options:
+                self.material["strength"] = options["STRENGTH"]
+        elif keyword == "ELASTIC":
+            values = [finite(word) for row in rows for word in row if word]
+            if options.get("TYPE") == "TRACTION":
+                self.material["traction"] = values
+            else:
+                self.material["stiffness"] = stiffness_of(values)
+        elif keyword == "EXPANSION":
+            values = [finite(word) for row in rows for word in row if word]
+            self.material["expansion"] = values if len(values) > 1 else values * 3
+        elif keyword == "CONDUCTIVITY":
+            values = [finite(word) for word in rows[0] if word]
+            self.material["conductivity"] = values if len(values) > 1 else values * 3
+        elif keyword == "SOLID SECTION":
+            self.sections.append((options["ELSET"], options["MATERIAL"], "ORIENTATION" in options))
+        elif keyword == "COHESIVE SECTION":
+            self.layers.append((options["ELSET"], options["MATERIAL"]))
+        elif keyword == "SURFACE":
+            self.surfaces[options["NAME"]] = (options.get("TYPE"), rows)
+        elif keyword == "TIE":
+            self.ties.append(rows[0])
+        elif keyword == "DISTRIBUTION":
+            for row in rows:
+                if row[0]:
+                    self.axes[int(row[0])] = [finite(v) for v in row[1:7]]
+        elif keyword == "STEP":
+            self.first_step = min(self.first_step, start)
+            self.step = {"name": comment, "drivers": {}, "temperature": 0.0}
+            self.steps.append(self.step)
+        elif keyword == "BOUNDARY" and self.step is not None:
+            for row in rows:
+                if len(row) > 3 and row[3]:
+                    self.step["drivers"][row[0]] = finite(row[3])
+                elif row[0].isdigit() and row[0] not in self.held:
+                    self._hold(row)
+        elif keyword == "TEMPERATURE" and self.step is not None:
+            self.step["temperature"] = finite(rows[0][1])
 
     def _hold(self, row):
         """A node all of whose unknowns are zero. (Others only keep a beam from turning, which no force does.)"""
@@ -153,6 +245,8 @@ class Deck:
             raise ForeignElement(f"elements of type {options['TYPE']}")
         elements = self.wedges if count == 6 else self.elements
         words = [int(word) for row in rows for word in row if word]
+        if len(words) % (count + 1) != 0:
+            raise ValueError(f"an element of {count} nodes has other than {count} numbers")
         for k in range(0, len(words), count + 1):
             elements[words[k]] = words[k + 1 : k + 1 + count]
             names.append(words[k])
@@ -169,9 +263,11 @@ class Deck:
         k = 0
         while k < len(words):
             count = int(words[k])
+            if not 0 < count <= (len(words) - k) // 3:
+                raise ValueError(f"an equation of {count} terms")
             terms = words[k + 1 : k + 1 + 3 * count]
             self.equations.append(
-                [(int(terms[3 * i]), int(terms[3 * i + 1]) - first, float(terms[3 * i + 2])) for i in range(count)]
+                [(int(terms[3 * i]), int(terms[3 * i + 1]) - first, finite(terms[3 * i + 2])) for i in range(count)]
             )
             k += 1 + 3 * count
 

@@ -13,6 +13,7 @@ iterative: the same elements and conditions without CalculiX, by conjugate gradi
 import argparse
 import json
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
@@ -27,7 +28,7 @@ except ModuleNotFoundError:
 import cell_cohesive
 import cell_conduction as conduction
 import cell_strength as strength
-from cell_deck import Deck, ForeignElement
+from cell_deck import WRONG_NUMBERS, BadDeck, Deck, ForeignElement, reason
 from cell_elements import Cell, NotSolved
 
 BLOCK = ["xx", "yy", "zz", "xy", "xz", "yz"]
@@ -44,11 +45,32 @@ class Failure(Exception):
     pass
 
 
-def run_ccx(program, folder, name):
+MOST_SECONDS = 3600  # of CalculiX, where --timeout says nothing
+
+
+def limit_memory(megabytes):
+    """Of this process and those that it starts; where none is said, what the machine has free."""
+    if megabytes is None:
+        free = [line.split()[1] for line in pathlib.Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemAvailable:")]
+        megabytes = int(free[0]) / 1024 if free else None
+    if megabytes is None:
+        return
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    wanted = int(megabytes * 2**20)
+    resource.setrlimit(resource.RLIMIT_AS, (wanted if hard == resource.RLIM_INFINITY else min(wanted, hard), hard))
+
+
+def run_ccx(program, folder, name, seconds):
     if shutil.which(program) is None:
         raise Failure(f"{program} is not installed: apt-get install calculix-ccx, or say --ccx PROGRAM")
     # One thread: the same digits on every machine.
-    run = subprocess.run([program, name], cwd=folder, text=True, capture_output=True, check=False)
+    try:
+        run = subprocess.run([program, name], cwd=folder, text=True, errors="replace", capture_output=True, check=False,
+                             timeout=seconds)
+    except subprocess.TimeoutExpired as failure:
+        raise Failure(f"CalculiX was stopped: not done within its {seconds:g} s; --timeout gives it more") from failure
+    except OSError as failure:
+        raise Failure(f"{program} cannot be started: {failure.strerror}") from failure
     text = run.stdout + run.stderr
     errors = [line.strip() for line in text.splitlines() if "*ERROR" in line]
     if errors or run.returncode != 0 or "Job finished" not in text:
@@ -217,7 +239,7 @@ def check_bounds(matrix, voigt, reuss, plate):
         )
 
 
-def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
+def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder, seconds):
     """The matrix of the drivers' forces (fluxes) a unit of their strains (gradients), and the forces of one degree; the nodes'
     displacements where materials have strengths; warnings of CalculiX and how it was done."""
     solver = given_solver
@@ -234,7 +256,7 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
         if breaks:
             lines = lines.replace("*END STEP", "*NODE PRINT, NSET=AllNodes\nU\n*END STEP")
         (folder / f"{name}.inp").write_text(lines)
-        warnings = run_ccx(ccx, folder, name)
+        warnings = run_ccx(ccx, folder, name, seconds)
         results = folder / f"{name}.dat"
         matrix, thermal = stiffness_from_steps(deck, drivers, reactions(results, deck))
         if breaks:
@@ -247,7 +269,7 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
     return matrix, thermal, fields, {"solver": solver, "warnings": warnings, "seconds": time.monotonic() - started}
 
 
-def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
+def homogenize(path, ccx, folder, with_bounds=False, solver="auto", seconds=MOST_SECONDS):
     try:
         deck = Deck(path)
     except ForeignElement as failure:
@@ -257,7 +279,9 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
         raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic; where it is periodic along one axis, --periodic will do)")
     if deck.cell is None:
         raise Failure(f"{path}: the deck does not say its cell")
-    matrix, thermal, fields, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder)
+    matrix, thermal, fields, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder, seconds)
+    if not (numpy.isfinite(matrix).all() and numpy.isfinite(thermal).all()):
+        raise Failure(f"{path}: what was found are no numbers: the deck's do not fit together")
     facts |= {
         "file": str(path),
         "cell": numpy.linalg.norm(deck.cell.edges, axis=1).tolist(),
@@ -477,10 +501,14 @@ def main():
         default="auto",
         help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT:,} nodes, of beams {LARGEST_DIRECT_BEAM:,})",
     )
+    parser.add_argument("--timeout", type=float, metavar="S", help=f"seconds that the mesh, and CalculiX, may take each (default: of CalculiX {MOST_SECONDS})")
+    parser.add_argument("--memory", type=float, metavar="MB", help="memory that the mesh, CalculiX and this script may take each (default: what is free)")
     parser.add_argument("--ccx", default="ccx", help="the program (default: ccx)")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
     given, others = parser.parse_known_args()
     path = pathlib.Path(given.file)
+    limits = [word for name in ("timeout", "memory") if getattr(given, name) for word in (f"--{name}", f"{getattr(given, name):g}")]
+    limit_memory(given.memory)
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(given.keep or temporary)
         folder.mkdir(parents=True, exist_ok=True)
@@ -489,7 +517,7 @@ def main():
                 raise Failure(f"{path}: no such file")
             if path.suffix != ".inp":
                 deck = folder / (path.stem + ".inp")
-                command = [given.selvage, "mesh", str(path), "-o", str(deck), "--periodic", *([] if given.dry else ["--matrix"]), *others]
+                command = [given.selvage, "mesh", str(path), "-o", str(deck), "--periodic", *([] if given.dry else ["--matrix"]), *limits, *others]
                 if subprocess.run(command, stdout=sys.stderr, check=False).returncode != 0:
                     raise Failure(f"{path}: it could not be meshed")
                 path = deck
@@ -497,9 +525,15 @@ def main():
                 raise Failure("--dry is of what is meshed here, and this is a deck: leave it out")
             elif others:
                 raise Failure(f"unknown options: {' '.join(others)}")
-            result = homogenize(path, given.ccx, folder, given.bounds, given.solver)
-        except (Failure, NotSolved) as failure:
+            result = homogenize(path, given.ccx, folder, given.bounds, given.solver, given.timeout or MOST_SECONDS)
+        except (Failure, NotSolved, BadDeck) as failure:
             print(f"homogenize: {failure}", file=sys.stderr)
+            return 1
+        except WRONG_NUMBERS as failure:  # a deck that no program wrote
+            print(f"homogenize: {path}: what the deck says does not fit together: {reason(failure)}", file=sys.stderr)
+            return 1
+        except MemoryError:
+            print(f"homogenize: {path}: needs more memory than there is, or than --memory gives", file=sys.stderr)
             return 1
     if given.json and given.json != "-":
         pathlib.Path(given.json).write_text(json.dumps(result, indent=1) + "\n")

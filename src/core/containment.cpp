@@ -81,10 +81,10 @@ class Ruleset {
 
   [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
 
-  // False: the rule was refused. What is not there gets none.
+  // False: the rule was refused, or no file can be opened now. What is not there gets none.
   [[nodiscard]] bool allow(const fs::path& path, std::uint64_t rights) const {
     const int place = ::open(path.c_str(), O_PATH | O_CLOEXEC);
-    if (place < 0) return true;
+    if (place < 0) return errno != EMFILE && errno != ENFILE && errno != ENOMEM;
     struct stat facts {};
     bool well = ::fstat(place, &facts) == 0;
     if (!S_ISDIR(facts.st_mode)) rights &= right::of_files;

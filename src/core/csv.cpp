@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+
+#include "core/number_text.h"
+#include "core/readable.h"
 
 namespace selvage {
 
@@ -13,6 +17,19 @@ std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
+}
+
+// Would a spreadsheet take this for a formula? Apostrophes in front of one are those of csv_value().
+bool is_formula(std::string_view value) {
+  const std::size_t begin = value.find_first_not_of('\'');
+  return begin != std::string_view::npos && std::string_view("=+-@\t\r\n").find(value[begin]) != std::string_view::npos &&
+         !read_number(value);
+}
+
+// What csv_value() was given.
+std::string_view without_mark(std::string_view value) {
+  if (value.starts_with('\'') && is_formula(value)) value.remove_prefix(1);
+  return value;
 }
 
 class Rows {
@@ -65,7 +82,7 @@ class Rows {
     std::string_view value = text_.substr(at_, stop - at_);
     at_ = stop;
     if (value.ends_with('\r')) value.remove_suffix(1);
-    row.emplace_back(without_blanks(value));
+    row.emplace_back(without_mark(without_blanks(value)));
     return {};
   }
 
@@ -79,7 +96,7 @@ class Rows {
     }
     at_ = i;
     while (!ends_value(at_)) ++at_;
-    row.push_back(std::move(value));
+    row.emplace_back(without_mark(value));
     return {};
   }
 
@@ -112,13 +129,14 @@ Result<CsvTable> read_csv(std::string_view text) {
     if (table.columns.empty()) {
       table.columns = std::move(*row);
       table.head_line = place.line;
+      std::set<std::string_view> names;
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const std::string& name = table.columns[i];
         if (name.empty())
           return error(Kind::malformed, fmt::format("column {} has no name", i + 1)).placed(place);
-        if (std::find(table.columns.begin(), table.columns.begin() + static_cast<std::ptrdiff_t>(i), name) !=
-            table.columns.begin() + static_cast<std::ptrdiff_t>(i))
-          return error(Kind::malformed, fmt::format("the column '{}' is there twice", name)).placed(place);
+        if (!names.insert(name).second)
+          return error(Kind::malformed, fmt::format("the column '{}' is there twice", shortened(name)))
+              .placed(place);
       }
       continue;
     }
@@ -136,8 +154,9 @@ Result<CsvTable> read_csv(std::string_view text) {
 }
 
 std::string csv_value(std::string_view value) {
-  if (value.find_first_of(",;\"\r\n\t") == std::string_view::npos) return std::string(value);
-  std::string quoted = "\"";
+  const bool needs_mark = is_formula(value);
+  if (!needs_mark && value.find_first_of(",;\"\r\n\t") == std::string_view::npos) return std::string(value);
+  std::string quoted = needs_mark ? "\"'" : "\"";
   for (const char c : value) {
     if (c == '"') quoted += '"';
     quoted += c;

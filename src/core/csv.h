@@ -20,10 +20,12 @@ struct CsvTable {
 
 // Blanks round values and empty lines mean nothing; lines that begin with `#` are comments. Errors
 // (malformed, with the line): no column, one without a name or twice there, a row of another length, an open
-// quote.
+// quote. What csv_value() marked comes back without its mark.
 Result<CsvTable> read_csv(std::string_view text);
 
-// A value as it stands in a row: in quotes where it has to be.
+// A value as it stands in a row: in quotes where it has to be. What begins as a formula does in a spreadsheet
+// (=, +, -, @, tab, end of line) and is no number gets an apostrophe in front, by which it is a text there
+// (OWASP, "CSV Injection").
 std::string csv_value(std::string_view value);
 
 }  // namespace selvage

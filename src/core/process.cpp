@@ -76,6 +76,21 @@ void set_limit(__rlimit_resource_t resource, rlim_t amount) {
   ::_exit(unlimited_status);
 }
 
+// Seconds of processor time that the system gives each process (`ulimit -t`).
+rlim_t processor_limit() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_CPU, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
+}
+
+// At the limit a process is sent SIGXCPU, or SIGKILL where it cannot be raised.
+bool has_used_up(int signal, const rusage& used) {
+  if (signal == SIGXCPU) return true;
+  constexpr rlim_t clocks_differ_by = 1;  // second: the limit is measured in ticks
+  const rlim_t limit = processor_limit();
+  const auto seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + clocks_differ_by;
+  return signal == SIGKILL && limit != RLIM_INFINITY && seconds >= limit;
+}
+
 class Runner {
  public:
   explicit Runner(const JobPool& pool) : pool_(pool) {
@@ -215,7 +230,8 @@ class Runner {
   void reap() {
     for (std::size_t i = 0; i < running_.size();) {
       int status = 0;
-      const pid_t gone = ::waitpid(running_[i].pid, &status, WNOHANG);
+      rusage used{};
+      const pid_t gone = ::wait4(running_[i].pid, &status, WNOHANG, &used);
       if (gone == 0 || (gone < 0 && errno != ECHILD)) {
         ++i;
         continue;
@@ -225,11 +241,13 @@ class Runner {
       running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
       read_packets(child);
       ::close(child.pipe);
-      pool_.finished(child.job, reason != 0 ? JobEnd{JobEnd::How::unheard, reason} : end_of(child, status));
+      pool_.finished(child.job, reason != 0 ? JobEnd{JobEnd::How::unheard, reason} : end_of(child, status, used));
     }
   }
 
-  static JobEnd end_of(const Running& child, int status) {
+  static JobEnd end_of(const Running& child, int status, const rusage& used) {
+    if (!WIFEXITED(status) && !child.timed_out && has_used_up(WTERMSIG(status), used))
+      return {JobEnd::How::used_up, static_cast<int>(processor_limit())};
     if (!WIFEXITED(status))
       return {
           child.timed_out || WTERMSIG(status) == SIGALRM ? JobEnd::How::timed_out : JobEnd::How::signalled,
@@ -288,6 +306,10 @@ std::string describe(const JobEnd& end, double seconds, std::string_view memory)
       return {};
     case JobEnd::How::timed_out:
       return fmt::format("was stopped: not done within its {:g} s; --timeout gives it more", seconds);
+    case JobEnd::How::used_up:
+      return fmt::format(
+          "was stopped: it used up the {} s of processor time that the system gives a process (ulimit -t)",
+          end.status);
     case JobEnd::How::not_started:
       return fmt::format("could not be started: {}", std::strerror(end.status));
     case JobEnd::How::unheard:

@@ -29,6 +29,7 @@ struct JobEnd {
     exited,       // status: what the job returned
     signalled,    // status: the signal's number
     timed_out,    // killed at its time limit, or that of end_after()
+    used_up,      // ended by the system's limit of processor time; status: its seconds
     not_started,  // status: errno of fork or pipe
     unheard,      // its packets, or its end, did not reach the parent; status: errno
   };

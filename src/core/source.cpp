@@ -7,8 +7,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
+#include <optional>
 #include <utility>
 
 namespace selvage {
@@ -44,22 +47,94 @@ bool await_writer(int pipe, std::string& bytes) {
   return false;
 }
 
-// Adds everything up to the end to `bytes`; false: errno says why not.
-bool read_to_end(int descriptor, std::string& bytes) {
+Message too_large(const std::filesystem::path& path, std::size_t most) {
+  return error(Kind::limit, fmt::format("larger than the {} bytes that are read of such a file", most),
+               {.file = path.string()});
+}
+
+// Adds everything up to the end to `bytes`, but stops behind `most`; false: errno says why not.
+bool read_to_end(int descriptor, std::size_t most, std::string& bytes) {
   constexpr std::size_t chunk = std::size_t{1} << 18;
-  for (;;) {
+  while (bytes.size() <= most) {
     const std::size_t old = bytes.size();
     bytes.resize(old + chunk);
     const ssize_t got = ::read(descriptor, bytes.data() + old, chunk);
+    const bool is_again = got < 0 && errno == EINTR;
     bytes.resize(old + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got == 0) return true;
-    if (got < 0 && errno != EINTR) return false;
+    if (got < 0 && !is_again) return false;
   }
+  return true;
+}
+
+// The number of bytes that were there to fill `buffer` from the file's begin; none: errno says why not.
+std::optional<std::size_t> read_from_begin(int file, char* buffer, std::size_t size) {
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t got = ::pread(file, buffer + done, size - done, static_cast<off_t>(done));
+    if (got == 0) break;
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return std::nullopt;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+bool is_same_state(const struct stat& a, const struct stat& b) {
+  return a.st_size == b.st_size && a.st_mtim.tv_sec == b.st_mtim.tv_sec &&
+         a.st_mtim.tv_nsec == b.st_mtim.tv_nsec;
+}
+
+// Does the path name what is in its folder or below it, links followed?
+bool is_inside_its_folder(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  if (!fs::is_symlink(path, failure)) return !failure;
+  const fs::path target = fs::canonical(path, failure);
+  if (failure) return false;
+  const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : ".", failure);
+  return !failure && is_below(target, folder);
+}
+
+// A copy of the file whose state `facts` is, in pages of its own, to be given back by munmap().
+Result<std::string_view> copied(int file, const struct stat& facts, const std::filesystem::path& path) {
+  const auto size = static_cast<std::size_t>(facts.st_size);
+  // Pages that nothing has touched: a string would be filled with zeros first.
+  void* const memory =
+      ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  const std::optional<std::size_t> got = read_from_begin(file, static_cast<char*>(memory), size);
+  struct stat now {};
+  const bool is_read = got && ::fstat(file, &now) == 0;
+  if (is_read && *got == size && is_same_state(facts, now))
+    return std::string_view(static_cast<const char*>(memory), size);
+  Message failure = is_read ? error(Kind::io,
+                                    "changed while it was read: call again when whoever writes it has ended",
+                                    {.file = path.string()})
+                            : io_error(path, "cannot read");
+  ::munmap(memory, size);
+  return failure;
 }
 
 }  // namespace
 
-Result<Source> Source::open(const std::filesystem::path& path) {
+bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+Result<std::string> read_head(const std::filesystem::path& path, std::size_t size) {
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK), true};
+  struct stat facts {};
+  if (file.fd < 0 || ::fstat(file.fd, &facts) != 0) return io_error(path, "cannot open");
+  if (!S_ISREG(facts.st_mode)) return error(Kind::io, "not a regular file", {.file = path.string()});
+  std::string head(size, '\0');
+  const std::optional<std::size_t> got = read_from_begin(file.fd, head.data(), size);
+  if (!got) return io_error(path, "cannot read");
+  head.resize(*got);
+  return head;
+}
+
+Result<Source> Source::open(const std::filesystem::path& path, std::size_t most) {
   Descriptor file;
   if (path == "-") {
     file.fd = STDIN_FILENO;
@@ -78,15 +153,14 @@ Result<Source> Source::open(const std::filesystem::path& path) {
     return error(Kind::io, "this is a device, not a file; '-' reads standard input", {.file = path.string()});
   Source source;
   source.name_ = path == "-" ? "<stdin>" : path.string();
+  source.may_be_quoted_ = !file.owned || (S_ISREG(facts.st_mode) && is_inside_its_folder(path));
   if (S_ISREG(facts.st_mode) && facts.st_size > 0 && file.owned) {
-    const auto size = static_cast<std::size_t>(facts.st_size);
-    void* mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0);
-    if (mapping != MAP_FAILED) {
-      ::madvise(mapping, size, MADV_SEQUENTIAL);
-      source.mapping_ = mapping;
-      source.bytes_ = {static_cast<const char*>(mapping), size};
-      return source;
-    }
+    if (static_cast<std::size_t>(facts.st_size) > most) return too_large(path, most);
+    const Result<std::string_view> copy = copied(file.fd, facts, path);
+    if (!copy) return copy.error();
+    source.pages_ = const_cast<char*>(copy->data());
+    source.bytes_ = *copy;
+    return source;
   }
   source.owned_ = std::make_unique<std::string>();
   std::string& bytes = *source.owned_;
@@ -96,7 +170,8 @@ Result<Source> Source::open(const std::filesystem::path& path) {
                    {.file = path.string()});
     if (::fcntl(file.fd, F_SETFL, O_RDONLY) != 0) return io_error(path, "cannot read");
   }
-  if (!read_to_end(file.fd, bytes)) return io_error(path, "cannot read");
+  if (!read_to_end(file.fd, most, bytes)) return io_error(path, "cannot read");
+  if (bytes.size() > most) return too_large(path, most);
   source.bytes_ = bytes;
   return source;
 }
@@ -118,8 +193,9 @@ Source& Source::operator=(Source&& other) noexcept {
     release();
     name_ = std::move(other.name_);
     owned_ = std::move(other.owned_);
-    mapping_ = std::exchange(other.mapping_, nullptr);
+    pages_ = std::exchange(other.pages_, nullptr);
     bytes_ = std::exchange(other.bytes_, {});
+    may_be_quoted_ = other.may_be_quoted_;
   }
   return *this;
 }
@@ -129,8 +205,8 @@ Source::~Source() {
 }
 
 void Source::release() {
-  if (mapping_ != nullptr) ::munmap(mapping_, bytes_.size());
-  mapping_ = nullptr;
+  if (pages_ != nullptr) ::munmap(pages_, bytes_.size());
+  pages_ = nullptr;
   bytes_ = {};
 }
 

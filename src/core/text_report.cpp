@@ -101,7 +101,7 @@ void TextReport::add(Severity severity, Kind kind, const Spot& spot, std::string
   Message message = selvage::error(
       kind, std::move(text), {.file = source_.name(), .place = spot.place(), .yarn = made_readable(yarn_)});
   message.severity = severity;
-  add_excerpt(message, spot, source_.bytes());
+  if (source_.may_be_quoted()) add_excerpt(message, spot, source_.bytes());
   messages_.push_back(std::move(message));
 }
 

@@ -31,6 +31,7 @@
 #include "pipeline/outputs.h"
 #include "pipeline/report.h"
 #include "pipeline/report_command.h"
+#include "pipeline/report_reader.h"
 #include "pipeline/roundtrip.h"
 #include "pipeline/sweep_table.h"
 
@@ -75,7 +76,9 @@ class Batch {
     std::string messages, results;
     std::size_t left_out = 0;  // messages beyond what is kept
     bool ended = false;
-    std::string reader;  // the format whose library reads the input now; empty: none
+    bool is_unusable = false;  // what it reports
+    double seconds = 0;        // that it has, where no option says so
+    std::string reader, read;  // the format whose library reads a file now, and the file; empty: none
   };
 
   int run_one(std::size_t job, const Channel& channel) const;
@@ -173,7 +176,11 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
     std::from_chars(bytes.data(), bytes.data() + bytes.size(), count);
     files_ += count;
   } else if (kind == packet::reader) {
-    work.reader = bytes;
+    const std::size_t mark = std::min(bytes.find(packet::separator), bytes.size());
+    work.reader = bytes.substr(0, mark);
+    work.read = bytes.substr(std::min(mark + 1, bytes.size()));
+  } else if (kind == packet::seconds) {
+    std::from_chars(bytes.data(), bytes.data() + bytes.size(), work.seconds);
   } else if (kind == packet::progress) {
     doing_ = bytes;
     progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -199,18 +206,25 @@ void Batch::flush_results() {
   }
 }
 
+// What a process says that has read a stranger's file is read as one reads strangers' reports.
 void Batch::keep_report(std::size_t job, std::string_view text) {
-  if (!reports_.empty()) reports_[job] = report_texts_.keep(text);
+  if (reports_.empty()) return;
+  if (const Result<Json> entry = parse_entry(text); entry) {
+    reports_[job] = report_texts_.keep(text);
+  } else {
+    work_[job].is_unusable = true;
+    fail(job, error(Kind::internal, fmt::format("what it reports cannot be used: {}", entry.error().text)));
+  }
 }
 
 void Batch::fail(std::size_t job, Message message) {
-  const std::string path(plan_.inputs().path(job));
+  const std::string path = message.file.empty() ? std::string(plan_.inputs().path(job)) : message.file;
   message.file = path == "-" ? "<stdin>" : path;
   work_[job].messages += to_string(message) + "\n";
   if (!options_.wants_report()) return;
   InputReport report(plan_.inputs().at(job));
   report.messages.push_back(std::move(message));
-  keep_report(job, report.text());
+  reports_[job] = report_texts_.keep(report.text());
 }
 
 // The signals of a library that goes astray, not of somebody who ends a process.
@@ -221,28 +235,33 @@ bool is_crash(int signal) {
 void Batch::finish(std::size_t job, const JobEnd& end) {
   Work& work = work_[job];
   work.ended = true;
-  std::string reason = describe(end, time_limit(options_), memory_limit(options_));
+  std::string reason = describe(end, options_.timeout > 0 ? options_.timeout : work.seconds,
+                                memory_limit(options_));
   if (reason.empty() && !is_verdict(end.status)) {
     // A library that ends the process by itself, as the C library does when thread storage cannot be had.
     reason = fmt::format("ended unexpectedly, with status {} (it could not take more memory than {})",
                          end.status, memory_limit(options_));
   }
   if (!reason.empty()) {
-    const bool is_alone = plan_.inputs().at(job).other.empty();
+    const Input input = plan_.inputs().at(job);
     const bool is_killed = end.how == JobEnd::How::signalled && is_crash(end.status);
-    if (is_killed && !work.reader.empty() && is_alone)
+    // Of the files that a job reads, those of the user; what it has written itself is no fault of theirs.
+    if (is_killed && !work.reader.empty() && (work.read == input.path || work.read == input.other))
       fail(job,
            error(Kind::malformed,
                  fmt::format(
                      "what this file says makes the reader of {} fail ({}): it is damaged, or breaks its "
                      "format in a way that is not told apart; write it anew where it comes from",
-                     work.reader, ::strsignal(end.status))));
+                     work.reader, ::strsignal(end.status)),
+                 {.file = work.read}));
     else
-      fail(job, error(end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal,
-                      (is_alone ? "this input " : "the comparison ") + reason));
+      fail(job, error(end.how == JobEnd::How::timed_out || end.how == JobEnd::How::used_up ? Kind::limit
+                                                                                          : Kind::internal,
+                      (input.other.empty() ? "this input " : "the comparison ") + reason));
     has_lost_workers_ = true;
   }
-  const auto verdict = reason.empty() ? static_cast<Verdict>(end.status) : Verdict::failed;
+  const auto verdict =
+      reason.empty() && !work.is_unusable ? static_cast<Verdict>(end.status) : Verdict::failed;
   if (verdict == Verdict::skipped) {
     ++counts_.skipped;
   } else if (verdict == Verdict::done || verdict == Verdict::defect) {
@@ -439,6 +458,7 @@ int refuse(const Message& message) {
 namespace {
 
 int run_all(Options options) {
+  if (const Status clock = check_clock(); !clock) return refuse(clock.error());
   if (options.command == Command::report) return run_report(options);
   if (Status status = check_sandbox(options.sandbox, this_kernel()); !status) return refuse(status.error());
   std::optional<TemporaryFolder> scratch;
@@ -462,7 +482,12 @@ int run_all(Options options) {
   if (Status status = check_report_places(options); !status.ok()) return refuse(status.error());
   share_memory(options, std::min(available_cores(options), plan->size()));
   plan->keep_part(options.part, options.parts);
-  if (options.part > 0) list->missing.clear();
+  if (options.part > 0) {
+    list->missing.clear();
+    list->notes.clear();
+  }
+  if (!options.quiet)
+    for (const Message& note : list->notes) write_messages(to_string(note) + "\n");
   return Batch(options, *plan, std::move(*earlier)).run(list->missing);
 }
 

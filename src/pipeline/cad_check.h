@@ -26,11 +26,10 @@ class CadCheck {
   [[nodiscard]] bool has_model() const { return measures_.has_value(); }
   // Is it a CAD file that another program wrote? Its tubes need not be yarns.
   [[nodiscard]] bool is_foreign() const { return has_model() && is_foreign_; }
-  // What is true when there is no defect.
-  [[nodiscard]] std::string_view sound() const {
-    return has_structure_ && structure_.warnings() == 0
-               ? "the file keeps to its format, its surfaces are sound"
-               : "its surfaces are sound";
+  // What is true when there is no defect. `has_warned`: something was said of the file, also by its reader.
+  [[nodiscard]] std::string_view sound(bool has_warned) const {
+    return has_structure_ && !has_warned ? "the file keeps to its format, its surfaces are sound"
+                                         : "its surfaces are sound";
   }
   // A line of how many defects and warnings the geometry has, and one of the header, records and flags.
   [[nodiscard]] std::string summary() const;

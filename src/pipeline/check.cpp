@@ -121,7 +121,7 @@ void print_tables(const Job& job, const Examined& found, const CadCheck& cad, st
   std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown.unit)), sound;
   if (cad.has_model()) {
     text += cad.table(shown) + cad.summary();
-    sound = cad.sound();
+    sound = cad.sound(job.has_warned());
   }
   if (!found.bodies.empty()) {
     text += yarn_tables(found, shown);

@@ -60,8 +60,8 @@ Result<const Descriptor*> detect_readable(const Source& source) {
 bool is_readable_format(const std::filesystem::path& path) {
   const Descriptor* format = format_with_extension(path.extension().string());
   if (format == nullptr || !format->is_readable()) {  // a .k is a program of a knitting machine, too
-    const Result<Source> source = Source::open(path);
-    format = source ? sniff(source->bytes().substr(0, head_size)) : nullptr;
+    const Result<std::string> head = read_head(path, head_size);
+    format = head ? sniff(*head) : nullptr;
   }
   return format != nullptr && format->is_readable() && format->read_points == nullptr;
 }

@@ -140,6 +140,7 @@ void edit(Job& job) {
   if ((*format)->insert_edit == nullptr)
     return job.say(error(Kind::unsupported, fmt::format("this is {} ({}): an `edit` line belongs in a text",
                                                         (*format)->name, (*format)->title)));
+  job.limit_time(**format);
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
   if (fabric) resolve_files(*fabric, *source, job.options.allow_outside, diagnostics);

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <functional>
+#include <set>
 #include <unordered_set>
 
 #include "core/source.h"
@@ -49,6 +51,8 @@ bool is_before(std::string_view a, std::string_view b) {
 
 class Expansion {
  public:
+  explicit Expansion(bool allow_outside) : allow_outside_(allow_outside) {}
+
   Status add(const std::string& argument) {
     if (argument == "-") return add_standard_input();
     std::error_code failure;
@@ -85,12 +89,48 @@ class Expansion {
     return {};
   }
 
+  struct Walk {
+    fs::path root;             // the named folder, as all paths in `entered` without links
+    std::set<fs::path> entered;  // folders to which links led, and the root
+    std::function<void(const std::string&)> found;
+  };
+
+  // False, with a note.
+  bool pass_by(const fs::path& link, std::string_view why) {
+    constexpr std::size_t most_notes = 20;
+    if (list.notes.size() < most_notes)
+      list.notes.push_back(note(Kind::usage, fmt::format("passed by: this symbolic link {}", why))
+                               .placed({}, link.native()));
+    else if (list.notes.size() == most_notes)
+      list.notes.push_back(note(Kind::usage, "further symbolic links were passed by"));
+    return false;
+  }
+
+  // A link may lead to a file in the named folder. It leaves it only where that is wanted, then to a folder,
+  // too, which is entered once; folders in the named one are found without it.
+  bool may_follow(const fs::path& link, Walk& walk) {
+    std::error_code failure;
+    const fs::path target = fs::canonical(link, failure);
+    if (failure) return pass_by(link, fmt::format("leads nowhere ({})", failure.message()));
+    const bool is_folder = fs::is_directory(target, failure);
+    const bool is_within = is_below(target, walk.root);
+    if (!is_within && !allow_outside_)
+      return pass_by(link, "leads out of the folder; --allow-outside follows it");
+    if (!is_folder) return true;
+    if (is_within || is_below(walk.root, target) || !walk.entered.insert(target).second)
+      return pass_by(link, "leads to a folder that is searched where it is");
+    return true;
+  }
+
   // Hidden files and folders are passed by; a folder that cannot be entered is an error of its own.
   Status add_folder(const fs::path& folder) {
     from_folder_ = true;
     SharedText text;
     std::vector<std::string_view> files;
-    collect(folder, [&](const std::string& file) { files.push_back(text.keep(file)); });
+    std::error_code failure;
+    const fs::path root = fs::canonical(folder, failure);
+    Walk walk{root, {root}, [&](const std::string& file) { files.push_back(text.keep(file)); }};
+    collect(folder, walk);
     std::sort(files.begin(), files.end(), is_before);
     for (const std::string_view file : files)
       list.inputs.add(input_at(std::string(file), fs::path(file).lexically_relative(folder)));
@@ -99,17 +139,18 @@ class Expansion {
     return {};
   }
 
-  void collect(const fs::path& folder, const std::function<void(const std::string&)>& found) {
+  void collect(const fs::path& folder, Walk& walk) {
     std::error_code failure;
     fs::directory_iterator entries(folder, failure);
     for (; !failure && entries != fs::directory_iterator(); entries.increment(failure)) {
       const fs::path& path = entries->path();
       if (path.filename().native().starts_with('.')) continue;
       std::error_code unknown;
-      if (entries->is_directory(unknown) && !entries->is_symlink(unknown))
-        collect(path, found);
+      if (entries->is_symlink(unknown) && !may_follow(path, walk)) continue;
+      if (entries->is_directory(unknown))
+        collect(path, walk);
       else if (entries->is_regular_file(unknown) && is_readable_format(path))
-        found(path.native());
+        walk.found(path.native());
     }
     if (failure)
       list.missing.push_back(error(Kind::io, fmt::format("cannot read the folder: {}", failure.message()),
@@ -136,16 +177,25 @@ class Expansion {
   }
 
   Status add_list(const std::string& name) {
-    Result<Source> source = Source::open(name);
+    Result<Source> source = Source::open(name, largest_list);
     if (!source) {
       source.error().kind = Kind::usage;
       return source.error();
     }
     from_folder_ = true;
+    int number = 0;
     for (std::string_view line : split(source->bytes(), '\n')) {
+      ++number;
       if (line.ends_with('\r')) line.remove_suffix(1);
       if (line.empty()) continue;
-      if (line.front() == '@') return error(Kind::usage, "a list cannot name another list", {.file = name});
+      const auto refuse = [&](std::string what) {
+        return error(Kind::usage, std::move(what), {.file = name, .place = {number, 1}});
+      };
+      if (line.front() == '@') return refuse("a list cannot name another list");
+      if (line.find('\0') != std::string_view::npos)
+        return refuse("this line has a zero byte: a list is a text with the path of an input in each line");
+      if (line.size() >= PATH_MAX)
+        return refuse(fmt::format("this line has {} bytes, and a path less than {}", line.size(), PATH_MAX));
       if (Status status = add(std::string(line)); !status.ok()) return status;
     }
     return {};
@@ -172,6 +222,9 @@ class Expansion {
   }
 
  private:
+  static constexpr std::size_t largest_list = std::size_t{1} << 28;  // bytes: some million paths
+
+  bool allow_outside_;
   bool from_folder_ = false, has_standard_input_ = false;
 };
 
@@ -254,7 +307,7 @@ Result<InputList> inputs_of(const Options& options) {
       return error(Kind::usage, "standard input can be only one of the two");
     return only({first_file(first).string(), {}, first_file(given[1]).string()});
   }
-  Expansion expansion;
+  Expansion expansion(options.allow_outside);
   for (const std::string& argument : given)
     if (Status status = expansion.add(argument); !status.ok()) return status.error();
   expansion.drop_later_parts();

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <utility>
 
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "core/sha256.h"
 #include "core/source.h"
@@ -117,6 +118,13 @@ fabric::BuildOptions Job::build_options() const {
   return build;
 }
 
+void Job::limit_time(const formats::Descriptor& format) {
+  if (options.timeout > 0) return;  // its process ends by that
+  seconds = format.is_own ? text_timeout : foreign_timeout;
+  channel_.send(packet::seconds, number_text(seconds));
+  end_after(seconds);
+}
+
 std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   Result<Source> source = Source::open(input.path);
   if (!source) return fail(source.error());
@@ -127,12 +135,13 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   }
   Result<const formats::Descriptor*> format = detect_readable(*source);
   if (!format) return fail(format.error());
-  if (!is_own) limit_time(options, **format);
+  if (!is_own) limit_time(**format);
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric;
   // Libraries die of some files: that is a defect of the file, not of ours.
   const std::string_view library = (*format)->foreign_reader;
-  if (!library.empty()) channel_.send(packet::reader, library);
+  if (!library.empty())
+    channel_.send(packet::reader, fmt::format("{}{}{}", library, packet::separator, input.path));
   if (look.file) {
     look.file(*source, **format);
     for (const std::filesystem::path& file : further_files(input.path))

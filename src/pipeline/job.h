@@ -37,7 +37,9 @@ inline constexpr char result = 'r';    // a piece of standard output
 inline constexpr char progress = 'p';  // what is being done right now
 inline constexpr char report = 'j';    // the InputReport as text
 inline constexpr char files = 'f';     // how many files were written, as decimal digits
-inline constexpr char reader = 'd';    // the format that another program's library reads now; empty: none
+inline constexpr char reader = 'd';    // the format that another program's library reads now, and of which file
+inline constexpr char seconds = 's';   // that the job has from now on, as decimal digits
+inline constexpr char separator = '\0';  // between the format and the file
 }  // namespace packet
 
 // What is to look at a CAD file while it is read; either may be empty.
@@ -72,6 +74,7 @@ class Job {
   bool keeps_messages = false;  // in its report, whether or not that is written
   bool is_own = false;          // this job wrote its input itself
   bool says_once = false;       // warnings and notes that were said are not said again
+  double seconds = 0;           // that it has, where options do not say so and its format is known
   double gap = 0;               // of constructions (fabric::BuildOptions::gap), file units
   bool unsolved = false;        // the yarns cannot be moved apart (it was said why): nothing is written
   InputReport report;
@@ -100,10 +103,13 @@ class Job {
     return [this, verb](std::size_t done, std::size_t total) { progress(verb, done, total); };
   }
 
+  [[nodiscard]] bool has_warned() const { return warnings_ > 0; }
   // An error, or with --strict a warning, was said.
   [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }
   [[nodiscard]] bool wants_report() const { return options.wants_report(); }
 
+  // Where no --timeout is given: ends this process at the limit for files of this format, from now on.
+  void limit_time(const formats::Descriptor& format);
   // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built
   // is fine.
   std::optional<fabric::Fabric> read(const CadLook& look = {});

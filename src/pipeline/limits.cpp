@@ -13,7 +13,6 @@
 #include "core/machine.h"
 #include "core/module.h"
 #include "core/output.h"
-#include "core/process.h"
 
 namespace selvage::pipeline {
 
@@ -67,10 +66,6 @@ void share_memory(Options& options, std::size_t jobs) {
   options.memory_is_share = true;
 }
 
-void limit_time(const Options& options, const formats::Descriptor& format) {
-  if (options.timeout <= 0 && !format.is_own) end_after(foreign_timeout);
-}
-
 Status guarded(const Options& options, const std::function<void()>& work) {
   try {
     work();
@@ -86,10 +81,6 @@ std::string memory_limit(const Options& options) {
   if (options.memory <= 0) return "there is";
   if (!options.memory_is_share) return fmt::format("the {:g} MB of --memory", options.memory);
   return fmt::format("its share of the machine, {:g} MB; --memory gives it more", options.memory);
-}
-
-double time_limit(const Options& options) {
-  return options.timeout > 0 ? options.timeout : foreign_timeout;
 }
 
 Status contain_job(const Options& options, std::span<const std::string> inputs,

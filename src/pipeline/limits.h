@@ -9,30 +9,23 @@
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "formats/format.h"
 #include "pipeline/options.h"
 #include "pipeline/outputs.h"
 
 namespace selvage::pipeline {
 
-// Of a file of another program, where no --timeout is given.
-constexpr double foreign_timeout = 300;  // seconds
+// Where no --timeout is given: of a file of another program, and of a text.
+constexpr double foreign_timeout = 300, text_timeout = 600;  // seconds
 
 // Where no --memory is given: each of so many jobs at once gets its share of the machine, but never so little
 // that libraries could not be opened.
 void share_memory(Options& options, std::size_t jobs);
-
-// In a job: ends its process after foreign_timeout when this format is of another program.
-void limit_time(const Options& options, const formats::Descriptor& format);
 
 // Does a job's work: what libraries throw does not leave it. Errors: limit (memory), internal.
 Status guarded(const Options& options, const std::function<void()>& work);
 
 // How much memory a job may take, and the remedy: "the 4000 MB of --memory".
 std::string memory_limit(const Options& options);
-// Seconds that a job had, which was stopped when they were over.
-double time_limit(const Options& options);
-
 // The folders of a run's outputs that are not there yet: jobs make them before they are contained, and those
 // that are still empty go with this object.
 class NewFolders {

@@ -40,7 +40,8 @@ fem::MeshOptions mesh_options(Job& job) {
   options.order = std::max(given.order, 1);
   if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
   constexpr double worker_share = 0.9;
-  if (given.timeout > 0) options.timeout = worker_share * given.timeout;
+  if (const double seconds = given.timeout > 0 ? given.timeout : job.seconds; seconds > 0)
+    options.timeout = worker_share * seconds;
   if (given.memory > 0) options.memory = given.memory;
   options.threads = static_cast<int>(job.threads);
   options.progress = [&job](const char* step, std::size_t done, std::size_t total) {

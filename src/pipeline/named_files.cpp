@@ -101,10 +101,6 @@ void take_shape(fabric::Yarn& yarn, fabric::Yarn measured) {
   if (measured.own.section) yarn.own.section = measured.own.section;
 }
 
-bool is_below(const fs::path& file, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
-}
-
 class NamedFiles {
  public:
   NamedFiles(const Source& input, bool allow_outside, Diagnostics& diagnostics)

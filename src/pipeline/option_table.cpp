@@ -509,9 +509,9 @@ void of_running(OptionTable& t) {
   t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
            take_shard);
   t.option(all, "--timeout",
-           kept(fmt::format("seconds an input may take (default: {:g} for formats of other programs, else no "
-                            "limit)",
-                            foreign_timeout)),
+           kept(fmt::format("seconds an input may take (default: {:g} for texts, {:g} for formats of other "
+                            "programs)",
+                            text_timeout, foreign_timeout)),
            Argument::positive(), &Options::timeout);
   t.option(all, "--memory",
            "MB of memory an input may take (default: what the machine, or the container, has free, shared by "
@@ -524,7 +524,8 @@ void of_running(OptionTable& t) {
        "require auto off", &Options::sandbox, {Sandbox::required, Sandbox::automatic, Sandbox::off})
       .with_preset("auto");
   t.flag(all, "--allow-outside",
-         "files that a text names (`draft file`) may be anywhere, not only in its folder or below",
+         "files that a text names (`draft file`) may be anywhere, not only in its folder or below; symbolic "
+         "links that lead out of an input folder are followed",
          &Options::allow_outside);
 }
 

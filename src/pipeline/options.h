@@ -102,7 +102,7 @@ struct Options {
   std::string formats;    // --to, as given
 
   std::size_t workers = 0;       // 0: one a core
-  double timeout = 0;            // seconds an input; 0: none, but for formats of other programs
+  double timeout = 0;            // seconds an input; 0: those of limits.h
   double memory = 0;             // MiB an input; 0: its share of the machine
   bool memory_is_share = false;  // it was not given
   Sandbox sandbox = Sandbox::automatic;

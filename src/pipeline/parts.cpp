@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::size_t head_size = 4096;
 
-std::optional<PartMark> mark_in(const Descriptor& format, const Source& source) {
+std::optional<PartMark> mark_in(const Descriptor& format, std::string_view bytes) {
   if (format.part_mark == nullptr) return std::nullopt;
-  return format.part_mark(source.bytes().substr(0, head_size));
+  return format.part_mark(bytes.substr(0, head_size));
 }
 
 void add_counts(std::map<std::string, std::uint64_t>& all,
@@ -55,7 +55,7 @@ Result<cad::Model> read_part(const Descriptor& format, const fs::path& path, con
         fmt::format(": it is file {} of {} of the fabric, and all are needed", number, first.count);
     return source.error();
   }
-  const std::optional<PartMark> mark = mark_in(format, *source);
+  const std::optional<PartMark> mark = mark_in(format, source->bytes());
   if (!mark || *mark != PartMark{number, first.count, first.set})
     return error(Kind::malformed,
                  mark
@@ -104,9 +104,9 @@ std::optional<PartMark> mark_of(const fs::path& path) {
   std::error_code failure;
   if (format == nullptr || format->part_mark == nullptr || !fs::is_regular_file(path, failure))
     return std::nullopt;
-  const Result<Source> source = Source::open(path);
-  if (!source) return std::nullopt;
-  return mark_in(*format, *source);
+  const Result<std::string> head = read_head(path, head_size);
+  if (!head) return std::nullopt;
+  return mark_in(*format, *head);
 }
 
 fs::path first_file(const fs::path& path) {
@@ -139,7 +139,7 @@ Result<std::string> digest_of(const fs::path& path) {
 std::optional<cad::Model> read_whole_model(const Descriptor& format, const Source& source,
                                            Diagnostics& diagnostics) {
   std::optional<cad::Model> model = format.read_model(source, diagnostics);
-  const std::optional<PartMark> mark = mark_in(format, source);
+  const std::optional<PartMark> mark = mark_in(format, source.bytes());
   if (!model || !mark) return model;
   const std::optional<fs::path> whole = whole_path(source.name());
   if (mark->number > 1 || (!whole && mark->count > 1)) {

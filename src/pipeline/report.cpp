@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/sha256.h"
 #include "core/source.h"
 #include "pipeline/parts.h"
+#include "pipeline/report_reader.h"
 #include "pipeline/versions.h"
 
 namespace selvage::pipeline {
@@ -26,14 +28,21 @@ Json message_json(const Message& message, double to_mm) {
 
 }  // namespace
 
+namespace {
+
+bool is_unknown(const Json& json) {
+  if (json.is_array()) return std::any_of(json.begin(), json.end(), is_unknown);
+  return json.is_null() || (json.is_number_float() && !std::isfinite(json.get<double>()));
+}
+
+}  // namespace
+
 void drop_unknown(Json& json) {
-  for (auto entry = json.begin(); json.is_structured() && entry != json.end();) {
-    drop_unknown(*entry);
-    if (json.is_object() && entry->is_null())
-      entry = json.erase(entry);
-    else
-      ++entry;
-  }
+  if (!json.is_structured()) return;
+  for (Json& entry : json) drop_unknown(entry);
+  if (!json.is_object()) return;
+  for (auto entry = json.begin(); entry != json.end();)
+    entry = is_unknown(*entry) ? json.erase(entry) : std::next(entry);
 }
 
 std::string text_of(const Json& json, int indent) {
@@ -98,23 +107,16 @@ std::string whole_report(const std::string& started, double seconds, bool ok, co
 }
 
 Result<Json> read_report(const std::string& path) {
-  const Result<Source> source = Source::open(path);
+  const Result<Source> source = Source::open(path, largest_report);
   if (!source) return source.error();
-  Json report = Json::parse(source->bytes(), nullptr, false);
-  const auto inputs = report.is_object() ? report.find("inputs") : report.end();
-  if (!report.is_object() || inputs == report.end() || !inputs->is_array())
-    return error(Kind::malformed,
-                 "this is not a report of selvage: those are written by --report FILE.json of other commands",
-                 {.file = path});
-  return report;
+  return parse_report(source->bytes(), path);
 }
 
 Result<std::map<std::string, std::string>> read_entries(const std::string& report_path) {
   const Result<Json> report = read_report(report_path);
   if (!report) return report.error();
   std::map<std::string, std::string> entries;
-  for (const Json& entry : report->at("inputs"))
-    if (const std::string path = text_at(entry, "path"); !path.empty()) entries[path] = text_of(entry);
+  for (const Json& entry : report->at("inputs")) entries[text_at(entry, "path")] = text_of(entry);
   return entries;
 }
 

@@ -63,7 +63,7 @@ Json list_json(const List& list, const Make& make) {
   return out;
 }
 
-// Takes away what is null.
+// Takes away the members that are null, numbers that are not finite, or lists with such.
 void drop_unknown(Json& json);
 // Names and messages may hold bytes that are not UTF-8: they are replaced, never a reason to fail. `indent`
 // below 0: on one line.
@@ -83,7 +83,7 @@ struct Counts {
 std::string whole_report(const std::string& started, double seconds, bool ok, const Counts& counts,
                          const std::vector<std::string>& inputs);
 
-// A report as it was written; `inputs` is there and a list, of whatever. Errors: io, malformed.
+// A report of any run (pipeline/report_reader.h says what can be relied on). Errors: io, malformed, limit.
 Result<Json> read_report(const std::string& path);
 
 // An earlier report: the entry of each path as JSON text. Errors: as read_report().

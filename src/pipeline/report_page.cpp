@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "core/base64.h"
 #include "core/number_text.h"
@@ -112,22 +113,45 @@ std::string spaced(std::string_view key) {
   return xml_text(text);
 }
 
+// The columns of a table, as they first come: at most so many that its cells are a small multiple of its
+// values, and those that are left out.
+struct TableColumns {
+  std::vector<std::string> keys;
+  std::size_t left_out = 0;
+};
+TableColumns columns_of(const Json& rows) {
+  constexpr std::size_t few = 16, most = 64, cells_a_value = 8;
+  std::size_t values = 0;
+  std::set<std::string_view> known;
+  TableColumns columns;
+  for (const auto& [name, row] : rows.items()) {
+    values += row.size();
+    for (const auto& [key, value] : row.items())
+      if (known.insert(key).second && columns.keys.size() < most) columns.keys.push_back(key);
+  }
+  const std::size_t allowed =
+      std::max(few, cells_a_value * values / std::max<std::size_t>(1, rows.size()));
+  if (columns.keys.size() > allowed) columns.keys.resize(allowed);
+  columns.left_out = known.size() - columns.keys.size();
+  return columns;
+}
+
 // Rows are members of an object, which are objects, too: systems, threads.
 void put_table(TextBuffer& to, std::string_view title, const Json& rows) {
-  std::vector<std::string> keys;
-  for (const auto& [name, row] : rows.items())
-    for (const auto& [key, value] : row.items())
-      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+  if (rows.empty()) return;
+  const TableColumns columns = columns_of(rows);
   to << "<table><thead><tr><th scope=\"col\" class=\"text\">" << title << "</th>";
-  for (const std::string& key : keys) to << "<th scope=\"col\">" << spaced(key) << "</th>";
+  for (const std::string& key : columns.keys) to << "<th scope=\"col\">" << spaced(key) << "</th>";
   to << "</tr></thead><tbody>";
   for (const auto& [name, row] : rows.items()) {
     to << "<tr><th scope=\"row\">" << xml_text(name) << "</th>";
-    for (const std::string& key : keys)
+    for (const std::string& key : columns.keys)
       to << "<td>" << (row.contains(key) ? shown(row.at(key)) : "–") << "</td>";
     to << "</tr>";
   }
   to << "</tbody></table>";
+  if (columns.left_out > 0)
+    to << "<p class=\"quiet\">" << counted(columns.left_out, "further figure") << " left out</p>";
 }
 
 // The numbers as the report has them: src/cli/variants.md says what they are.

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 
 #include "core/process.h"
 #include "core/progress.h"
+#include "core/readable.h"
 #include "core/words.h"
 #include "pipeline/batch.h"
 #include "pipeline/job.h"
@@ -84,54 +86,92 @@ std::string_view reason_in(std::string_view message) {
   return message.substr(at + mark.size(), message.find('\n', at) - at - mark.size());
 }
 
+// One picture, of the rows of one input as it was at one time: reports that are joined name it several times.
+struct Drawing {
+  Input input;
+  std::string digest;  // empty: not known
+  std::vector<std::size_t> rows;
+  Thumbnail made;
+};
+
+// Of rows without one `thumbnails` say why.
+std::vector<Drawing> drawings_of(const std::vector<const Json*>& entries,
+                                 std::vector<Thumbnail>& thumbnails) {
+  std::vector<Drawing> drawings;
+  std::map<std::pair<std::string, std::string>, std::size_t> known;
+  std::size_t rows = 0;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const std::string path = text_at(*entries[k], "path"), digest = text_at(*entries[k], "sha256");
+    std::optional<Input> input = input_of(path);
+    if (rows == most_thumbnails) {
+      thumbnails[k].note = fmt::format("only the first {} have pictures", most_thumbnails);
+    } else if (!input) {
+      thumbnails[k].note = "the file is not there";
+    } else {
+      ++rows;
+      const auto [drawing, is_new] = known.emplace(std::pair(path, digest), drawings.size());
+      if (is_new) drawings.push_back({std::move(*input), digest, {}, {}});
+      drawings[drawing->second].rows.push_back(k);
+    }
+  }
+  return drawings;
+}
+
+// Each row its picture, as long as the page does not get too large.
+void hand_out(const std::vector<Drawing>& drawings, std::vector<Thumbnail>& thumbnails) {
+  std::vector<const Thumbnail*> of_row(thumbnails.size());
+  for (const Drawing& drawing : drawings)
+    for (const std::size_t row : drawing.rows) of_row[row] = &drawing.made;
+  std::size_t bytes = 0;
+  for (std::size_t k = 0; k < thumbnails.size(); ++k) {
+    if (of_row[k] == nullptr) continue;
+    bytes += of_row[k]->png.size();
+    if (bytes <= most_thumbnail_bytes)
+      thumbnails[k] = *of_row[k];
+    else
+      thumbnails[k].note = fmt::format("a page has {} MB of pictures at most", most_thumbnail_bytes >> 20U);
+  }
+}
+
 }  // namespace
 
 Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
                                              const std::vector<const Json*>& entries) {
-  std::vector<Thumbnail> made(entries.size());
-  std::vector<std::pair<std::size_t, Input>> drawn;  // entry, input
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    std::optional<Input> input = input_of(text_at(*entries[k], "path"));
-    if (drawn.size() == most_thumbnails)
-      made[k].note = fmt::format("only the first {} have pictures", most_thumbnails);
-    else if (!input)
-      made[k].note = "the file is not there";
-    else
-      drawn.emplace_back(k, std::move(*input));
-  }
+  std::vector<Thumbnail> thumbnails(entries.size());
+  std::vector<Drawing> drawings = drawings_of(entries, thumbnails);
   Options view = viewing(options);
-  share_memory(view, std::min(available_cores(view), std::max<std::size_t>(1, drawn.size())));
+  share_memory(view, std::min(available_cores(view), std::max<std::size_t>(1, drawings.size())));
   ProgressDisplay progress(view.progress_json                 ? ProgressForm::json
                            : !view.quiet && !view.no_progress ? ProgressForm::shown
                                                               : ProgressForm::none,
-                           drawn.size());
+                           drawings.size());
   std::size_t ended = 0;
   JobPool pool;
-  pool.count = drawn.size();
+  pool.count = drawings.size();
   pool.at_once = available_cores(view);
   pool.seconds = view.timeout;
   pool.mebibytes = view.memory;
   pool.run = [&](std::size_t index, const Channel& channel) {
-    const Json& entry = *entries[drawn[index].first];
-    const Input& input = drawn[index].second;
+    const Drawing& drawing = drawings[index];
     const std::vector<PlannedOutput> none;
-    Job job(view, input, none, channel);
-    Status done = contain_job(view, std::array{input.path}, {});
-    if (done) done = guarded(view, [&] { send_picture(job, text_at(entry, "sha256")); });
+    Job job(view, drawing.input, none, channel);
+    Status done = contain_job(view, std::array{drawing.input.path}, {});
+    if (done) done = guarded(view, [&] { send_picture(job, drawing.digest); });
     if (!done) job.say(done.error());
     return 0;
   };
   pool.received = [&](std::size_t index, char kind, std::string_view bytes) {
-    Thumbnail& thumbnail = made[drawn[index].first];
-    if (kind == thumbnail_packet::picture) thumbnail.png = bytes;
-    if (kind == thumbnail_packet::note) thumbnail.note = bytes;
-    if (kind == packet::message && thumbnail.note.empty()) thumbnail.note = reason_in(bytes);
+    constexpr std::size_t longest_note = 500;  // characters
+    Thumbnail& made = drawings[index].made;
+    if (kind == thumbnail_packet::picture && bytes.size() <= most_thumbnail_bytes) made.png = bytes;
+    if (kind == thumbnail_packet::note) made.note = shortened(bytes, longest_note);
+    if (kind == packet::message && made.note.empty()) made.note = shortened(reason_in(bytes), longest_note);
   };
   pool.finished = [&](std::size_t index, const JobEnd& end) {
-    Thumbnail& thumbnail = made[drawn[index].first];
-    const std::string reason = describe(end, time_limit(view), memory_limit(view));
-    if (!reason.empty()) thumbnail = {{}, "drawing it " + reason};
-    if (thumbnail.png.empty() && thumbnail.note.empty()) thumbnail.note = "it could not be drawn";
+    Thumbnail& made = drawings[index].made;
+    const std::string reason = describe(end, view.timeout, memory_limit(view));
+    if (!reason.empty()) made = {{}, "drawing it " + reason};
+    if (made.png.empty() && made.note.empty()) made.note = "it could not be drawn";
     progress.set(++ended, 0, "drawing");
   };
   pool.interrupted = [](std::size_t) {};
@@ -140,7 +180,8 @@ Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
   progress.finish();
   if (!end) return end.error();
   if (*end == PoolEnd::interrupted) return error(Kind::interrupted, "interrupted; nothing was written");
-  return made;
+  hand_out(drawings, thumbnails);
+  return thumbnails;
 }
 
 }  // namespace selvage::pipeline

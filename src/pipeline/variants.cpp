@@ -11,6 +11,7 @@
 #include "core/csv.h"
 #include "core/number_text.h"
 #include "core/source.h"
+#include "core/text_report.h"
 #include "core/words.h"
 
 namespace selvage::pipeline {
@@ -130,8 +131,15 @@ Variants hypercube_of(const std::vector<Axis>& axes, std::size_t samples, std::u
   return all;
 }
 
+// A zero byte ends a text to some, and goes on for others.
+bool is_usable(std::string_view text) {
+  return text.find('\0') == std::string_view::npos;
+}
+
 Result<Variants> rows_of_table(const std::string& path) {
-  const Result<Source> source = Source::open(path);
+  constexpr std::size_t largest_table = std::size_t{1} << 26;  // bytes: a row of 64 for each variant
+  constexpr std::size_t longest_name = 256;                    // stands in each row
+  const Result<Source> source = Source::open(path, largest_table);
   if (!source) return error(Kind::usage, fmt::format("--table: {}", source.error().text), {.file = path});
   const Result<CsvTable> table = read_csv(source->bytes());
   const auto at_table = [&](Message message) {
@@ -140,6 +148,11 @@ Result<Variants> rows_of_table(const std::string& path) {
     return message;
   };
   if (!table) return at_table(table.error());
+  for (const std::string& name : table->columns)
+    if (name.size() > longest_name || !is_usable(name))
+      return at_table(error(Kind::usage, fmt::format("no param is called {}", in_quotes(name)))
+                          .placed({table->head_line, 1}));
+  if (Status few = check_number(static_cast<double>(table->rows.size())); !few) return at_table(few.error());
   Variants all;
   for (std::size_t row = 0; row < table->rows.size(); ++row) {
     std::vector<Setting>& settings = all.emplace_back();
@@ -148,6 +161,10 @@ Result<Variants> rows_of_table(const std::string& path) {
       if (value.empty())
         return at_table(error(Kind::usage, fmt::format("the value of {} is missing", table->columns[column]))
                             .placed({table->lines[row], 1}));
+      if (!is_usable(value))
+        return at_table(
+            error(Kind::usage, fmt::format("the value of {} has a zero byte", table->columns[column]))
+                .placed({table->lines[row], 1}));
       settings.push_back({table->columns[column], value});
     }
   }

@@ -2,12 +2,14 @@
 
 import hashlib
 import json
+import os
 import pathlib
 import re
 import shutil
+import threading
 import unittest
 
-from program import BAD, Case, GRID, PATH, RING, files_below, run
+from program import BAD, Case, GRID, PATH, RING, ROOT, files_below, run
 
 
 class Report(Case):
@@ -181,9 +183,119 @@ class Resume(Case):
     def test_a_report_of_something_else(self):
         self.path.write_text("[1, 2]")
         self.assertIn("not a report", self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume"))
-        self.path.write_text('{"inputs": [{"path": 3}, 4, {"path": "%s", "ok": true, "outputs": 7, "sha256": 1}]}'
-                             % (self.inside / "a.txt"))
-        self.assertEqual(self.convert()["done"], 3)
+        for value, place in (('{"path": 3}', r"inputs\[0\]\.path is a number"), ("4", r"inputs\[0\] is a number"),
+                             ('{"path": "a.txt", "ok": null}', r"inputs\[0\]\.ok is null"),
+                             ('{"path": "a.txt", "ok": true, "outputs": 7}', r"inputs\[0\]\.outputs is a number, where a list"),
+                             ("[" * 60000 + "]" * 60000, "nested more than 32 deep")):
+            self.path.write_text('{"inputs": [%s]}' % value)
+            message = self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume")
+            self.assertRegex(message, f"^{self.path}: error: this is not a report .*{place}")
+
+
+def members(value, place=()):
+    """The places of all that a report has, of lists the first element."""
+    yield place
+    if isinstance(value, dict):
+        for name in value:
+            yield from members(value[name], (*place, name))
+    elif isinstance(value, list) and value:
+        yield from members(value[0], (*place, 0))
+
+
+def in_words(place):
+    return re.escape("".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in place).removeprefix("."))
+
+
+class FromOutside(Case):
+    """Reports that somebody else wrote: what is wrong is said with its place, and costs no more than a small multiple of them."""
+
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "report.json"
+
+    def refused(self, content, pattern):
+        self.path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        for arguments in (("merge", self.path, "-o", self.folder / "all.json"), ("html", self.path, "-o", self.folder / "page.html")):
+            message = self.fails(1, "report", *arguments)
+            self.assertRegex(message, f"^{self.path}: error: {pattern}")
+            self.assertEqual(message.count("\n"), 1, message)
+        self.assertEqual(list(files_below(self.folder)), ["report.json"])
+
+    def test_nested(self):
+        for depth in (33, 1000, 60000, 1_000_000):
+            for start, end in (("[", "]"), ('{"a":', "}")):
+                nested = depth * start + "0" + depth * end
+                for content in (nested, '{"inputs": [{"path": "a", "more": %s}]}' % nested, depth * start):
+                    self.refused(content, "this is not a report of selvage .*: lists and objects are nested more than 32 deep")
+        # The program itself nests less.
+        self.path.write_text('{"inputs": [{"path": "a", "more": %s0%s}]}' % (28 * "[", 28 * "]"))
+        self.succeeds("report", "merge", self.path, "-o", "-")
+
+    def test_no_json(self):
+        for content, place in (("", "it is no JSON at line 1, column 1"), ('{"inputs": [\n  {"path": "a"},]}', "it is no JSON at line 2, column 18"),
+                               (b'{"inputs": [{"path": "\xff"}]}', "it is no JSON at line 1, column 2[23]"), ('{"inputs": []} x', "it is no JSON"),
+                               ('{"inputs": [{"path": "a", "seconds": 1e999}]}', "a number is too large at line 1"),
+                               ('{"inputs": [], "inputs": []}', "an object has two members 'inputs'"),
+                               ('{"inputs": [{"path": "a\\u0000b"}]}', r"inputs\[0\]\.path is a text, where"),
+                               ('{"inputs": [{"path": ""}]}', "its input 1 has no path"),
+                               ('{"inputs": [], "seconds": 1e300}', "seconds is a number, where a number from 0 to 1e15 is needed"),
+                               ('{"inputs": [], "counts": {"done": -1}}', r"counts\.done is a number, where a whole number from 0"),
+                               ('{"ok": true}', "it has no inputs"), ("3", "it is a number, where an object is needed")):
+            with self.subTest(content):
+                self.refused(content, f"this is not a report of selvage .*: {place}")
+
+    def test_wrong_types(self):
+        """Every member of reports of all kinds, with a value of every other type."""
+        seen = set()
+        for arguments in (("info", ROOT / "samples" / "plain_by_params.txt"), ("check", GRID, "--reach", "1"), ("mesh", PATH, "-o", self.folder / "x.inp"),
+                          ("convert", RING, BAD / "misspelt.txt", "--to", "iges", "-o", self.out)):
+            run(*arguments, "--report", self.path)
+            report = json.loads(self.path.read_text())
+            for place in members(report):
+                if place[:1] == ("inputs",) and place[2:] in seen:
+                    continue
+                seen.add(place[2:] if place[:1] == ("inputs",) else place)
+                wrong = json.loads(json.dumps(report))
+                holder = wrong
+                for step in place[:-1]:
+                    holder = holder[step]
+                right = holder[place[-1]] if place else report
+                for value in (None, True, 5.5, "a text", [], {}):
+                    kinds = (bool, (int, float), str, list, dict)
+                    if any(isinstance(value, kind) and isinstance(right, kind) and isinstance(value, bool) == isinstance(right, bool) for kind in kinds):
+                        continue
+                    if place:
+                        holder[place[-1]] = value
+                    else:
+                        wrong = value
+                    with self.subTest(place=place, value=value):
+                        self.path.write_text(json.dumps(wrong))
+                        message = self.fails(1, "report", "merge", self.path, "-o", self.folder / "all.json")
+                        self.assertRegex(message, rf"error: this is not a report of selvage .*: {in_words(place) or 'it'} is .*, where .* is needed$")
+        self.assertGreater(len(seen), 60)
+
+    def test_a_page_is_not_larger_than_its_report_makes_it(self):
+        """Tables whose rows have nothing in common, inputs without end, and one input named again and again."""
+        rows = {f"r{k}": {f"k{k}": 1} for k in range(5000)}
+        empty = {f"r{k}": {} for k in range(10000)}
+        wide = {"r": {f"k{k}": 1 for k in range(10000)}}
+        for content in ([{"path": "a", "sheets": {"weave": {"threads": rows, "systems": rows}}}], [{"path": "a", "sheets": {"weave": {"threads": empty}}}],
+                        [{"path": "a", "sheets": {"weave": {"threads": wide}}}], [{"path": "a"}] * 10000,
+                        [{"path": "a", "messages": [{"severity": "error", "text": "x"}] * 3000}]):
+            self.path.write_text(json.dumps({"inputs": content}))
+            page = self.folder / "page.html"
+            self.succeeds("report", "html", self.path, "-o", page, "--no-pictures")
+            self.assertLess(page.stat().st_size, 50 * self.path.stat().st_size)
+            if "sheets" in content[0] and content[0]["sheets"]["weave"]["threads"] is not empty:
+                self.assertRegex(page.read_text(), r"\d+ further figures left out")
+
+    def test_a_pipe(self):
+        pipe = self.folder / "pipe.json"
+        os.mkfifo(pipe)
+        writer = threading.Thread(target=lambda: pipe.write_text('{"inputs": [{"path": "a", "ok": null}]}'))
+        writer.start()
+        self.assertRegex(self.fails(1, "report", "merge", pipe, "-o", "-"), r"inputs\[0\]\.ok is null")
+        writer.join()
 
 
 if __name__ == "__main__":

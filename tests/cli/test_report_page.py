@@ -264,12 +264,6 @@ class Refusals(Base):
         self.assertIn("--output", self.fails(2, "report", "html", self.report))
         self.assertIn("REPORT", self.fails(2, "report", "html", "-o", self.folder / "x.html"))
 
-    def test_odd_values_are_passed_by(self):
-        self.report.write_text(json.dumps({"inputs": [{"path": "a.txt", "ok": 1, "messages": [3, {"severity": 4}], "sheets": {"weave": 7},
-                                                       "overlaps": [5], "outputs": ["x"], "mesh": [], "seconds": "long", "yarn_count": None}]}))
-        page = self.page()
-        self.assertEqual(page.cells("Status")[0]["text"], "failed")
-
     def test_the_command_is_in_the_tables(self):
         self.assertRegex(self.succeeds("--help").stdout, r"(?m)^\s+report\s")
         for form in ("man", "complete-bash", "complete-zsh", "complete-fish", "json-usage"):

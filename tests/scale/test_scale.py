@@ -78,7 +78,7 @@ class Scale(Case):
             sizes.append(side * side)
             cloth = self.folder / f"jersey{side}.txt"
             cloth.write_text(JERSEY.format(courses=side, wales=side))
-            used = Used("convert", cloth, "--to", "iges", "-o", self.out, "-j2", "--no-progress")
+            used = Used("convert", cloth, "--to", "iges", "-o", self.out, "-j2", "--no-progress", "--timeout", "7200")
             self.assertEqual(used.code, 0, used.messages)
             seconds.append(used.user)
             parts = sorted(self.out.glob(f"jersey{side}*.igs"))
