@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 
 namespace selvage {
@@ -59,6 +60,16 @@ void add_excerpt(Message& message, const Spot& spot, std::string_view bytes) {
   if (!message.excerpt.empty()) message.caret = static_cast<int>(left.size()) + 1;
 }
 
+// Without what may be words of the text, which stand in quotes: a quote within them ends nothing.
+std::string without_quoted(const std::string& text) {
+  std::size_t begin = text.find('\'');
+  // An apostrophe follows a letter.
+  while (begin != text.npos && begin > 0 && std::isalnum(static_cast<unsigned char>(text[begin - 1])) != 0)
+    begin = text.find('\'', begin + 1);
+  if (begin == text.npos) return text;
+  return text.substr(0, begin) + "'...'" + text.substr(text.rfind('\'') + 1);
+}
+
 }  // namespace
 
 Spot spot_at(const Source& source, TextPlace place) {
@@ -98,10 +109,14 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
 }
 
 void TextReport::add(Severity severity, Kind kind, const Spot& spot, std::string text) {
-  Message message = selvage::error(
-      kind, std::move(text), {.file = source_.name(), .place = spot.place(), .yarn = made_readable(yarn_)});
+  Message message = selvage::error(kind, std::move(text), {.file = source_.name(), .place = spot.place()});
   message.severity = severity;
-  if (source_.may_be_quoted()) add_excerpt(message, spot, source_.bytes());
+  if (source_.may_be_quoted()) {
+    message.yarn = made_readable(yarn_);
+    add_excerpt(message, spot, source_.bytes());
+  } else {
+    message.text = without_quoted(message.text);
+  }
   messages_.push_back(std::move(message));
 }
 

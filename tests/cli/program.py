@@ -79,6 +79,15 @@ def children_of(pid):
         return []
 
 
+def seconds_of(pid):
+    """Of processor time; 0 of a process that is gone."""
+    try:
+        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except (FileNotFoundError, ProcessLookupError):
+        return 0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def files_below(folder):
     """Every file below the folder, hidden ones too, with its bytes, by its path inside it."""
     folder = pathlib.Path(folder)

@@ -2,12 +2,13 @@
 
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import time
 import unittest
 
-from program import Case, GRID, RING, children_of, environment, files_below, run, start
+from program import Case, GRID, RING, SAMPLES, children_of, environment, files_below, run, seconds_of, start
 
 
 class Isolation(Case):
@@ -46,6 +47,34 @@ class Isolation(Case):
             self.assertEqual(process.returncode, 1, message)
             self.assertRegex(message, f"(?m)^{self.stuck}: error: this input .*{words}")
             self.assertEqual(sorted(files_below(self.out)), ["plain4_grid.igs", "ring.igs"])
+
+    def test_texts_have_a_time_limit_of_their_own(self):
+        """The signal of the limit comes from here: nobody waits ten minutes for it."""
+        process = start("mesh", SAMPLES / "cell_twill.txt", "--matrix", "--size", "0.02", "-o", self.folder / "x.inp", "--quiet")
+        self.addCleanup(process.kill)
+        worker, = self.wait_for_children(process, 1)
+        while seconds_of(worker) < 0.5:
+            self.assertIsNone(process.poll(), "ended too early")
+            time.sleep(0.01)
+        os.kill(worker, signal.SIGALRM)
+        _, message = process.communicate()
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("cell_twill.txt: error: this input was stopped: not done within its 600 s; --timeout gives it more", message)
+        self.assertIn("(default: 600 for texts, 300 for formats of other programs)", " ".join(run("mesh", "--help").stdout.split()))
+
+    def test_few_descriptors(self):
+        """Where the system has none left, that is said, and not that something is forbidden."""
+        ends = set()
+        for count in range(3, 16):
+            def limit(count=count):
+                resource.setrlimit(resource.RLIMIT_NOFILE, (count, count))
+            done = run("info", RING, preexec_fn=limit)
+            ends.add(done.returncode)
+            self.assertNotIn("denied", done.stderr, count)
+            if done.returncode != 0 and count > 4:
+                self.assertIn("Too many open files", done.stderr, count)
+        self.assertIn(0, ends)
+        self.assertGreater(len(ends), 1)
 
     def test_memory_is_limited(self):
         large = self.folder / "large.txt"

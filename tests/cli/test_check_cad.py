@@ -37,6 +37,23 @@ class CheckCad(Case):
                     self.assertEqual(done.stderr, "")
                     self.assertIn("its surfaces are sound; every yarn is a closed valid solid", done.stdout)
 
+    def test_a_file_that_was_warned_of_does_not_keep_to_its_format(self):
+        step, iges = self.written("good.stp").read_text(), self.written("good.igs").read_text()
+        first = re.search(r"(?m)^#\d+ = CARTESIAN_POINT.*;$", step)[0]
+        number = re.search(r"(-?\d+\.\d*)[,)]", first)[1]
+        for name, text in (("schema.stp", re.sub(r"FILE_SCHEMA\(\('[^']*'", "FILE_SCHEMA(('NOBODYS_SCHEMA'", step)),
+                           ("trailing.stp", step + "more\n"), ("twice.stp", step.replace(first, f"{first}\n{first}", 1)),
+                           ("exponent.stp", step.replace(first, first.replace(number, f"{number}e0", 1), 1)),
+                           ("trailing.igs", iges + "more\n")):
+            with self.subTest(name):
+                path = self.folder / name
+                path.write_text(text)
+                done = run("check", path)
+                self.assertRegex(done.stderr, r"warning|error")
+                self.assertNotIn("keeps to its format", done.stdout)
+        for name in ("good.stp", "good.igs"):
+            self.assertIn("sound: the file keeps to its format", self.succeeds("check", self.folder / name).stdout)
+
     def test_fan_has_poles(self):
         path = self.written("fan.igs", "--ends", "fan")
         done = run("check", path)

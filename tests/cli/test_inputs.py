@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import threading
 import unittest
 
 from program import BAD, Case, GRID, PATH, PROGRAM, RING, environment, files_below
@@ -33,6 +34,26 @@ class Kinds(Case):
     def test_list_that_is_missing(self):
         self.assertIn("No such file", self.fails(2, "convert", f"@{self.folder}/none.txt", "-o", self.out))
 
+    def test_lines_of_a_list_that_are_no_paths(self):
+        listing = self.folder / "list.txt"
+        for content, place, words in ((f"{GRID}\r\n{GRID}\0x\r\n", 2, "this line has a zero byte"), (f"\n\n@{GRID}\n", 3, "a list cannot name another list"),
+                                      (f"{GRID}\n{'a/' * 3000}b\n", 2, "this line has 6001 bytes, and a path less than 4096")):
+            listing.write_text(content, newline="")
+            message = self.fails(2, "convert", f"@{listing}", "-o", self.out)
+            self.assertIn(f"{listing}:{place}:1: error: {words}", message)
+        huge = self.folder / "huge.txt"
+        with open(huge, "w") as file:
+            file.truncate(1 << 40)
+        self.assertIn("larger than the 268435456 bytes", self.fails(2, "convert", f"@{huge}", "-o", self.out))
+
+    def test_a_list_in_a_pipe(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        writer = threading.Thread(target=lambda: pipe.write_text(f"{GRID}\r\n{RING}"))
+        writer.start()
+        self.assertEqual(self.converted(f"@{pipe}"), ["plain4_grid.igs", "ring.igs"])
+        writer.join()
+
     def test_pattern_that_the_shell_left_alone(self):
         for name in ("a1.txt", "a2.txt", "b.txt"):
             shutil.copy(GRID, self.folder / name)
@@ -58,6 +79,65 @@ class Kinds(Case):
             parts.append({name for name in files_below(out) if name.startswith("r")})
         self.assertEqual(sorted(map(len, parts)), [2, 2, 3])
         self.assertEqual(set.union(*parts), {f"r{i}.igs" for i in range(7)})
+
+
+class Links(Case):
+    """A folder is not left by way of a symbolic link in it."""
+
+    def setUp(self):
+        super().setUp()
+        self.inside, self.outside = self.folder / "in", self.folder / "outside"
+        for folder in (self.inside / "sub", self.outside / "deep"):
+            folder.mkdir(parents=True)
+        shutil.copy(RING, self.inside / "own.txt")
+        shutil.copy(RING, self.outside / "other.txt")
+        shutil.copy(RING, self.outside / "deep" / "one.txt")
+        (self.outside / "words.txt").write_text("secret words\n")
+        for name, target in (("within.txt", "own.txt"), ("sub/up.txt", "../own.txt"), ("out.txt", "../outside/other.txt"), ("words.txt", self.outside / "words.txt"),
+                             ("folder", "../outside"), ("loop", "."), ("sub/loop", ".."), ("sub/above", "../.."), ("twice", "../outside/deep"),
+                             ("circle.txt", "circle.txt"), ("nowhere.txt", "gone.txt"), ("kernel.txt", "/proc/kmsg"), ("shadow.txt", "/etc/shadow")):
+            (self.inside / name).symlink_to(target)
+
+    def test_links_are_passed_by(self):
+        messages = self.succeeds("convert", self.inside, "--to", "iges", "-o", f"{self.out}/").stderr
+        self.assertEqual(sorted(files_below(self.out)), ["own.igs", "sub/up.igs", "within.igs"])
+        for name in ("out.txt", "words.txt", "folder", "kernel.txt", "shadow.txt", "sub/above", "twice"):
+            self.assertIn(f"{self.inside}/{name}: note: passed by: this symbolic link leads out of the folder; --allow-outside follows it\n", messages)
+        for name in ("circle.txt", "nowhere.txt"):
+            self.assertRegex(messages, f"{self.inside}/{name}: note: passed by: this symbolic link leads nowhere ")
+        for name in ("loop", "sub/loop"):
+            self.assertIn(f"{self.inside}/{name}: note: passed by: this symbolic link leads to a folder that is searched where it is\n", messages)
+        self.assertNotIn("secret", messages)
+        self.assertEqual(messages.count("note"), 11)
+        quiet = self.succeeds("convert", self.inside, "--to", "iges", "-o", f"{self.out}/", "--quiet").stderr
+        self.assertEqual(quiet, "")
+
+    def test_links_are_followed_where_that_is_wanted(self):
+        for name in ("kernel.txt", "shadow.txt", "words.txt"):
+            (self.inside / name).unlink()
+        (self.outside / "words.txt").unlink()
+        (self.outside / "back").symlink_to("../in")
+        (self.outside / "deep" / "round").symlink_to("..")
+        messages = self.succeeds("convert", self.inside, "--to", "iges", "-o", f"{self.out}/", "--allow-outside").stderr
+        made = sorted(files_below(self.out))
+        self.assertEqual([name for name in made if "/" not in name], ["out.igs", "own.igs", "within.igs"])
+        self.assertIn("folder/other.igs", made)
+        self.assertIn("folder/deep/one.igs", made)
+        self.assertLess(len(made), 12)
+        self.assertNotIn("leads out", messages)
+
+    def test_lines_of_another_folder_are_not_shown(self):
+        message = self.fails(1, "info", self.inside / "words.txt")
+        self.assertIn("in/words.txt:1:1: error: ", message)
+        self.assertNotIn("secret", message)
+        self.assertIn("secret words\n  ^", self.fails(1, "info", self.outside / "words.txt"))
+
+    def test_many_links(self):
+        for k in range(100):
+            (self.inside / f"link{k:03}.txt").symlink_to("/etc/shadow")
+        messages = self.succeeds("info", self.inside).stderr
+        self.assertEqual(messages.count(": note: "), 21)
+        self.assertIn("further symbolic links were passed by", messages)
 
 
 class Bad(Case):

@@ -10,7 +10,7 @@ import signal
 import time
 import unittest
 
-from program import GRID, RING, SAMPLES, Case, children_of, run, start
+from program import GRID, RING, SAMPLES, Case, children_of, run, seconds_of, start
 
 COUNT = int(os.environ.get("STEP_MUTATIONS", "100"))
 COMMANDS = {
@@ -104,26 +104,19 @@ class Mutations(Case):
         (self.folder / "many.txt").write_text(text)
         path = self.folder / "many.stp"
         self.succeeds("convert", self.folder / "many.txt", "-o", path)
-        process = start("info", path, "--quiet")
-        deadline = time.monotonic() + 300
-        while time.monotonic() < deadline and process.poll() is None:
-            worker = next(iter(children_of(process.pid)), None)
-            if worker and self.seconds_of(worker) > 0.3:
-                os.kill(worker, signal.SIGSEGV)
-                break
-            time.sleep(0.01)
-        _, errors = process.communicate(timeout=300)
-        self.assertEqual(process.returncode, 1)
-        self.assertRegex(errors, r"many.stp: error: what this file says makes the reader of STEP fail \(Segmentation fault\)")
-
-    @staticmethod
-    def seconds_of(pid):
-        """Of processor time."""
-        try:
-            fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-        except (FileNotFoundError, ProcessLookupError):
-            return 0
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        for arguments in (("info", path), ("diff", path, GRID), ("diff", GRID, path)):
+            with self.subTest(arguments):
+                process = start(*arguments, "--quiet")
+                deadline = time.monotonic() + 300
+                while time.monotonic() < deadline and process.poll() is None:
+                    worker = next(iter(children_of(process.pid)), None)
+                    if worker and seconds_of(worker) > 0.3:
+                        os.kill(worker, signal.SIGSEGV)
+                        break
+                    time.sleep(0.01)
+                _, errors = process.communicate(timeout=300)
+                self.assertEqual(process.returncode, 1)
+                self.assertRegex(errors, rf"^{path}: error: what this file says makes the reader of STEP fail \(Segmentation fault\)")
 
     def keep(self, folder, died):
         kept = os.environ.get("STEP_MUTATIONS_KEEP")

@@ -78,6 +78,29 @@ class Sweep(Case):
         self.assertIn("pitch 1.2", (self.out / "cloth_0002.txt").read_text())
         self.assertIn("diameter 0.25", (self.out / "cloth_0002.txt").read_text())
 
+    def test_no_cell_is_a_formula(self):
+        """What begins as a formula does is a text to spreadsheets, and reads back as it was."""
+        odd = self.folder / "=1+1.txt"
+        odd.write_text(CLOTH)
+        given = self.folder / "given.csv"
+        given.write_text("d,distance\n\"'+0.2mm\",1\n+0.2,1\n")
+        self.cloth = odd
+        _, rows = self.sweep("--table", given)
+        self.assertEqual([row["variant"] for row in rows], ["'=1+1_0001", "'=1+1_0002"])
+        self.assertEqual([row["d"] for row in rows], ["'+0.2mm", "+0.2"])
+        self.assertNotRegex(self.table.read_text(), r"(?m)(^|,)\"?[=@]")
+
+    def test_tables_that_are_none(self):
+        given = self.folder / "given.csv"
+        for content, words in ((b"d\n0.2\n1\0002\n", ":3:1: error: the value of d has a zero byte"), (b"d\0\n1\n", ":1:1: error: no param is called 'd"),
+                               (b"a" * 300 + b"\n1\n", ":1:1: error: no param is called 'aaa"),
+                               (b"d\n" + b"1\n" * 1_000_001, "error: 1000001 variants are more than the 1000000")):
+            given.write_bytes(content)
+            result = run("sweep", self.cloth, "--table", given, "--csv", self.table)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"{given}", result.stderr)
+            self.assertIn(words, result.stderr)
+
     def test_variants_that_fail_have_a_row(self):
         result, rows = self.sweep("--set", "distance=0.1,1", code=1)
         self.assertEqual([row["result"] for row in rows], ["failed", "ok"])

@@ -6,13 +6,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
 #include <thread>
 
+#include "core/text_report.h"
 #include "unit/core/scratch_folder.h"
 
 namespace selvage {
 
-TEST(Source, MapsAFile) {
+TEST(Source, CopiesAFile) {
   const test::ScratchFolder folder;
   const std::string bytes("two\nlines\0and a zero", 20);
   test::put_bytes(folder / "a.txt", bytes);
@@ -24,19 +26,84 @@ TEST(Source, MapsAFile) {
 
 TEST(Source, ViewsStayValidAcrossMoves) {
   const test::ScratchFolder folder;
-  test::put_bytes(folder / "a.txt", "mapped");
-  Result<Source> mapped = Source::open(folder / "a.txt");
-  ASSERT_TRUE(mapped.ok());
-  const std::string_view view = mapped->bytes();
-  const Source moved = std::move(*mapped);
+  test::put_bytes(folder / "a.txt", "copied");
+  Result<Source> copied = Source::open(folder / "a.txt");
+  ASSERT_TRUE(copied.ok());
+  const std::string_view view = copied->bytes();
+  const Source moved = std::move(*copied);
   EXPECT_EQ(moved.bytes().data(), view.data());
-  EXPECT_EQ(view, "mapped");
+  EXPECT_EQ(view, "copied");
   Source small = Source::from_memory("abc", "name");
   const std::string_view small_view = small.bytes();
   const Source small_moved = std::move(small);
   EXPECT_EQ(small_moved.bytes().data(), small_view.data());
   EXPECT_EQ(small_view, "abc");
   EXPECT_EQ(small_moved.name(), "name");
+}
+
+TEST(Source, WhatBecomesOfTheFileChangesNothing) {
+  const test::ScratchFolder folder;
+  const std::string bytes(100'000, 'x');
+  test::put_bytes(folder / "a.txt", bytes);
+  const Result<Source> source = Source::open(folder / "a.txt");
+  ASSERT_TRUE(source.ok());
+  ASSERT_EQ(::truncate((folder / "a.txt").c_str(), 0), 0);
+  EXPECT_EQ(source->bytes(), bytes);  // of a mapped file this would be SIGBUS
+}
+
+TEST(Source, AFileThatHasFewerBytesThanItSaysHasChanged) {
+  const char* const file = "/sys/devices/system/cpu/online";
+  struct stat facts {};
+  if (::stat(file, &facts) != 0 || facts.st_size < 100) GTEST_SKIP() << "no such file here";
+  const Result<Source> source = Source::open(file);
+  ASSERT_FALSE(source.ok());
+  EXPECT_EQ(source.error().kind, Kind::io);
+  EXPECT_NE(source.error().text.find("changed while it was read"), std::string::npos);
+}
+
+TEST(Source, Bounds) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "a.txt", "12345678");
+  EXPECT_TRUE(Source::open(folder / "a.txt", 8).ok());
+  const Result<Source> large = Source::open(folder / "a.txt", 7);
+  ASSERT_FALSE(large.ok());
+  EXPECT_EQ(large.error().kind, Kind::limit);
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::thread writer([&] { test::put_bytes(path, "12345678"); });
+  const Result<Source> pipe = Source::open(path, 7);
+  writer.join();
+  ASSERT_FALSE(pipe.ok());
+  EXPECT_EQ(pipe.error().kind, Kind::limit);
+  EXPECT_EQ(read_head(folder / "a.txt", 3).value(), "123");
+  EXPECT_EQ(read_head(folder / "a.txt", 99).value(), "12345678");
+  EXPECT_FALSE(read_head(path, 3).ok());
+}
+
+TEST(Source, QuotesOnlyWhatIsInItsFolder) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path inner = std::filesystem::path(folder / "in");
+  std::filesystem::create_directory(inner);
+  test::put_bytes(folder / "secret.txt", "words");
+  test::put_bytes((inner / "own.txt").string(), "words");
+  std::filesystem::create_symlink("own.txt", inner / "within.txt");
+  std::filesystem::create_symlink("../secret.txt", inner / "out.txt");
+  const auto message = [](const std::filesystem::path& path) {
+    const Result<Source> source = Source::open(path);
+    TextReport report(*source);
+    report.set_yarn("words");
+    report.error({source->bytes().data(), 1, 1}, "what is said of a yarn's 'words' is wrong");
+    Diagnostics found;
+    report.hand_over(found);
+    return found.messages().front();
+  };
+  for (const char* name : {"own.txt", "within.txt"}) {
+    EXPECT_EQ(message(inner / name).excerpt, "words");
+    EXPECT_EQ(message(inner / name).text, "what is said of a yarn's 'words' is wrong");
+  }
+  const Message outside = message(inner / "out.txt");
+  EXPECT_EQ(to_string(outside),
+            (inner / "out.txt").string() + ":1:1: error: what is said of a yarn's '...' is wrong");
 }
 
 TEST(Source, EmptyFile) {
