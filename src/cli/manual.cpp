@@ -100,8 +100,9 @@ std::string manual_page() {
   page += ".SH ENVIRONMENT\n";
   page += paragraph("\\fBNO_COLOR\\fR", "Set to anything: no colours on a terminal");
   page += paragraph("\\fBTMPDIR\\fR", "Where files of a run stand that go at its end");
-  page += paragraph("\\fBSOURCE_DATE_EPOCH\\fR",
-                    "The moment that headers of outputs name, in whole seconds of Unix time, of the years 1970 to 9999");
+  page += paragraph(
+      "\\fBSOURCE_DATE_EPOCH\\fR",
+      "The moment that headers of outputs name, in whole seconds of Unix time, of the years 1970 to 9999");
   page += ".SH EXAMPLES\n";
   page += ".nf\n";
   for (const pipeline::Subcommand& command : pipeline::all_commands()) page += roff(command.examples) + "\n";

@@ -46,10 +46,11 @@ std::string stamp(const char* form) {
 Status check_clock() {
   const std::optional<Given> given = given_time();
   if (!given || given->usable) return {};
-  return error(Kind::usage,
-               fmt::format("SOURCE_DATE_EPOCH is '{}': it is the time of files in whole seconds since 1970, from "
-                           "0 to {} (the year 9999); mend it, or unset it",
-                           shortened(given->text), end_of_9999));
+  return error(
+      Kind::usage,
+      fmt::format("SOURCE_DATE_EPOCH is '{}': it is the time of files in whole seconds since 1970, from "
+                  "0 to {} (the year 9999); mend it, or unset it",
+                  shortened(given->text), end_of_9999));
 }
 
 std::string iges_timestamp() {

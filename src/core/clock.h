@@ -8,8 +8,8 @@
 
 namespace selvage {
 
-// To be asked before files are written. Error (usage): SOURCE_DATE_EPOCH is no whole number, or in no year from
-// 1970 to 9999.
+// To be asked before files are written. Error (usage): SOURCE_DATE_EPOCH is no whole number, or in no year
+// from 1970 to 9999.
 Status check_clock();
 
 // UTC as "YYYYMMDD.HHNNSS", the form of IGES.

@@ -22,8 +22,8 @@ std::string_view without_blanks(std::string_view text) {
 // Would a spreadsheet take this for a formula? Apostrophes in front of one are those of csv_value().
 bool is_formula(std::string_view value) {
   const std::size_t begin = value.find_first_not_of('\'');
-  return begin != std::string_view::npos && std::string_view("=+-@\t\r\n").find(value[begin]) != std::string_view::npos &&
-         !read_number(value);
+  return begin != std::string_view::npos &&
+         std::string_view("=+-@\t\r\n").find(value[begin]) != std::string_view::npos && !read_number(value);
 }
 
 // What csv_value() was given.

@@ -241,7 +241,8 @@ class Runner {
       running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
       read_packets(child);
       ::close(child.pipe);
-      pool_.finished(child.job, reason != 0 ? JobEnd{JobEnd::How::unheard, reason} : end_of(child, status, used));
+      pool_.finished(child.job,
+                     reason != 0 ? JobEnd{JobEnd::How::unheard, reason} : end_of(child, status, used));
     }
   }
 

@@ -108,10 +108,10 @@ Result<std::string_view> copied(int file, const struct stat& facts, const std::f
   const bool is_read = got && ::fstat(file, &now) == 0;
   if (is_read && *got == size && is_same_state(facts, now))
     return std::string_view(static_cast<const char*>(memory), size);
-  Message failure = is_read ? error(Kind::io,
-                                    "changed while it was read: call again when whoever writes it has ended",
-                                    {.file = path.string()})
-                            : io_error(path, "cannot read");
+  Message failure =
+      is_read ? error(Kind::io, "changed while it was read: call again when whoever writes it has ended",
+                      {.file = path.string()})
+              : io_error(path, "cannot read");
   ::munmap(memory, size);
   return failure;
 }

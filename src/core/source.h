@@ -32,8 +32,8 @@ class Source {
 
   [[nodiscard]] std::string_view bytes() const { return bytes_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  // May messages show its words and lines? Not those of a file that a link elsewhere leads to, or of what is no regular
-  // file (but standard input): they may be somebody else's.
+  // May messages show its words and lines? Not those of a file that a link elsewhere leads to, or of what is
+  // no regular file (but standard input): they may be somebody else's.
   [[nodiscard]] bool may_be_quoted() const { return may_be_quoted_; }
 
  private:

@@ -235,8 +235,8 @@ bool is_crash(int signal) {
 void Batch::finish(std::size_t job, const JobEnd& end) {
   Work& work = work_[job];
   work.ended = true;
-  std::string reason = describe(end, options_.timeout > 0 ? options_.timeout : work.seconds,
-                                memory_limit(options_));
+  std::string reason =
+      describe(end, options_.timeout > 0 ? options_.timeout : work.seconds, memory_limit(options_));
   if (reason.empty() && !is_verdict(end.status)) {
     // A library that ends the process by itself, as the C library does when thread storage cannot be had.
     reason = fmt::format("ended unexpectedly, with status {} (it could not take more memory than {})",
@@ -256,7 +256,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                  {.file = work.read}));
     else
       fail(job, error(end.how == JobEnd::How::timed_out || end.how == JobEnd::How::used_up ? Kind::limit
-                                                                                          : Kind::internal,
+                                                                                           : Kind::internal,
                       (input.other.empty() ? "this input " : "the comparison ") + reason));
     has_lost_workers_ = true;
   }

@@ -90,7 +90,7 @@ class Expansion {
   }
 
   struct Walk {
-    fs::path root;             // the named folder, as all paths in `entered` without links
+    fs::path root;               // the named folder, as all paths in `entered` without links
     std::set<fs::path> entered;  // folders to which links led, and the root
     std::function<void(const std::string&)> found;
   };
@@ -99,8 +99,8 @@ class Expansion {
   bool pass_by(const fs::path& link, std::string_view why) {
     constexpr std::size_t most_notes = 20;
     if (list.notes.size() < most_notes)
-      list.notes.push_back(note(Kind::usage, fmt::format("passed by: this symbolic link {}", why))
-                               .placed({}, link.native()));
+      list.notes.push_back(
+          note(Kind::usage, fmt::format("passed by: this symbolic link {}", why)).placed({}, link.native()));
     else if (list.notes.size() == most_notes)
       list.notes.push_back(note(Kind::usage, "further symbolic links were passed by"));
     return false;
@@ -141,16 +141,19 @@ class Expansion {
 
   void collect(const fs::path& folder, Walk& walk) {
     std::error_code failure;
-    fs::directory_iterator entries(folder, failure);
-    for (; !failure && entries != fs::directory_iterator(); entries.increment(failure)) {
-      const fs::path& path = entries->path();
-      if (path.filename().native().starts_with('.')) continue;
+    std::vector<fs::directory_entry> entries;
+    for (fs::directory_iterator next(folder, failure); !failure && next != fs::directory_iterator();
+         next.increment(failure))
+      if (!next->path().filename().native().starts_with('.')) entries.push_back(*next);
+    // Of two links to a folder the first one counts, whatever order the file system has.
+    std::sort(entries.begin(), entries.end());
+    for (const fs::directory_entry& entry : entries) {
       std::error_code unknown;
-      if (entries->is_symlink(unknown) && !may_follow(path, walk)) continue;
-      if (entries->is_directory(unknown))
-        collect(path, walk);
-      else if (entries->is_regular_file(unknown) && is_readable_format(path))
-        walk.found(path.native());
+      if (entry.is_symlink(unknown) && !may_follow(entry.path(), walk)) continue;
+      if (entry.is_directory(unknown))
+        collect(entry.path(), walk);
+      else if (entry.is_regular_file(unknown) && is_readable_format(entry.path()))
+        walk.found(entry.path().native());
     }
     if (failure)
       list.missing.push_back(error(Kind::io, fmt::format("cannot read the folder: {}", failure.message()),

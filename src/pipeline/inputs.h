@@ -50,14 +50,14 @@ class Inputs {
 struct InputList {
   Inputs inputs;  // in the order of the command line; the files of a folder sorted by their bytes
   std::vector<Message>
-      missing;                 // folders that cannot be read or hold nothing readable, patterns without a match
+      missing;  // folders that cannot be read or hold nothing readable, patterns without a match
   std::vector<Message> notes;  // of what was passed by in folders
-  bool one_file = false;  // the command line names exactly one file (no folder, no list)
+  bool one_file = false;       // the command line names exactly one file (no folder, no list)
 };
 
 // Symbolic links in a folder are followed to what is in it, and further only where the options allow files
-// outside. Errors (usage): a list that cannot be read, or has what is no path, "-" twice, nothing named. `diff`
-// and `edit` take files only, as they are named.
+// outside. Errors (usage): a list that cannot be read, or has what is no path, "-" twice, nothing named.
+// `diff` and `edit` take files only, as they are named.
 Result<InputList> inputs_of(const Options& options);
 
 }  // namespace selvage::pipeline

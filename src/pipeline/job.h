@@ -37,8 +37,8 @@ inline constexpr char result = 'r';    // a piece of standard output
 inline constexpr char progress = 'p';  // what is being done right now
 inline constexpr char report = 'j';    // the InputReport as text
 inline constexpr char files = 'f';     // how many files were written, as decimal digits
-inline constexpr char reader = 'd';    // the format that another program's library reads now, and of which file
-inline constexpr char seconds = 's';   // that the job has from now on, as decimal digits
+inline constexpr char reader = 'd';  // the format that another program's library reads now, and of which file
+inline constexpr char seconds = 's';     // that the job has from now on, as decimal digits
 inline constexpr char separator = '\0';  // between the format and the file
 }  // namespace packet
 

@@ -129,8 +129,7 @@ TableColumns columns_of(const Json& rows) {
     for (const auto& [key, value] : row.items())
       if (known.insert(key).second && columns.keys.size() < most) columns.keys.push_back(key);
   }
-  const std::size_t allowed =
-      std::max(few, cells_a_value * values / std::max<std::size_t>(1, rows.size()));
+  const std::size_t allowed = std::max(few, cells_a_value * values / std::max<std::size_t>(1, rows.size()));
   if (columns.keys.size() > allowed) columns.keys.resize(allowed);
   columns.left_out = known.size() - columns.keys.size();
   return columns;

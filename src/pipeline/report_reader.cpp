@@ -131,7 +131,7 @@ std::string_view type_in_words(std::string_view type) {
   if (type == "duration") return "a number from 0 to 1e15";
   if (type == "count") return "a whole number from 0 to 1e15";
   if (type == "boolean") return "true or false";
-  return "a text";
+  return type == "path" ? "a path" : "a text";
 }
 
 std::string_view in_words(const Json& value) {
@@ -149,8 +149,9 @@ bool is_of_type(const Json& value, std::string_view type) {
   if (type == "duration")
     return value.is_number() && value.get<double>() >= 0 && value.get<double>() <= largest_sum;
   if (type == "boolean") return value.is_boolean();
-  // What ends in a zero byte to some, and goes on for others, names nothing.
-  return value.is_string() && value.get_ref<const std::string&>().find('\0') == std::string::npos;
+  // What ends in a zero byte to some, and goes on for others, names no file.
+  return value.is_string() &&
+         (type != "path" || value.get_ref<const std::string&>().find('\0') == std::string::npos);
 }
 
 // `types` has the form of report_types.
@@ -199,19 +200,26 @@ Result<Json> parse(std::string_view bytes) {
   return builder.take();
 }
 
-Status check_path(const Json& entry, std::size_t number) {
-  if (!text_at(entry, "path").empty()) return {};
+Status check_named(const Json& entry, std::size_t number) {
+  const auto path = entry.find("path");  // of what is no object: its end
+  if (path != entry.end() && *path != "") return {};
   return malformed(fmt::format("its input {} has no path", number));
 }
 
 Status check_report(const Json& report) {
+  const auto inputs = report.find("inputs");
+  if (inputs != report.end() && inputs->is_array())
+    for (std::size_t i = 0; i < inputs->size(); ++i)
+      if (Status named = check_named((*inputs)[i], i + 1); !named) return named;
   Place place;
   if (Status well = check_types(report, types_of_report(), place); !well) return well;
-  const auto inputs = report.find("inputs");
-  if (inputs == report.end()) return malformed("it has no inputs");
-  for (std::size_t i = 0; i < inputs->size(); ++i)
-    if (Status named = check_path((*inputs)[i], i + 1); !named) return named;
-  return {};
+  return inputs == report.end() ? malformed("it has no inputs") : Status();
+}
+
+Status check_entry(const Json& entry) {
+  Place place;
+  if (Status named = check_named(entry, 1); !named) return named;
+  return check_types(entry, types_of_entry(), place);
 }
 
 }  // namespace
@@ -227,9 +235,7 @@ Result<Json> parse_report(std::string_view bytes, std::string_view name) {
 Result<Json> parse_entry(std::string_view bytes) {
   Result<Json> entry = parse(bytes);
   if (!entry) return entry;
-  Place place;
-  if (Status well = check_types(*entry, types_of_entry(), place); !well) return well.error();
-  if (Status named = check_path(*entry, 1); !named) return named.error();
+  if (Status well = check_entry(*entry); !well) return well.error();
   return entry;
 }
 

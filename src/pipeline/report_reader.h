@@ -1,5 +1,5 @@
-// Reports as they come from outside, as JSON that can be relied on: the parent process reads them, and nothing
-// stands between it and who wrote them.
+// Reports as they come from outside, as JSON that can be relied on: the parent process reads them, and
+// nothing stands between it and who wrote them.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ namespace selvage::pipeline {
 inline constexpr std::size_t largest_report = std::size_t{1} << 30;  // bytes
 inline constexpr std::size_t deepest_report = 32;                    // lists and objects within each other
 
-// A report of any run. Its members are of the types in which the program writes them, each of its inputs has a
-// path, no object has two members of one name; members that the program does not know may be anything. Takes
-// time and memory in proportion to `bytes`. Errors, in the file `name`: limit (larger, nested deeper);
+// A report of any run. Its members are of the types in which the program writes them, each of its inputs has
+// a path, no object has two members of one name; members that the program does not know may be anything.
+// Takes time and memory in proportion to `bytes`. Errors, in the file `name`: limit (larger, nested deeper);
 // malformed, with the place in the text where it is no JSON, else with the place in the report
 // ("inputs[2].ok").
 Result<Json> parse_report(std::string_view bytes, std::string_view name);

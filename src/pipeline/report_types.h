@@ -6,13 +6,13 @@
 namespace selvage::pipeline {
 
 // As JSON. A list has one element, the type of all of its own; an object has the members that are known, "*"
-// those of any name. "text", "number", "duration" (from 0), "count" (a whole number from 0), "boolean" are
-// types.
+// those of any name. "text", "path" (a text without zero bytes), "number", "duration" (from 0), "count" (a
+// whole number from 0), "boolean" are types.
 inline constexpr std::string_view report_types = R"({
   "selvage": "text", "libraries": {"*": "text"}, "started": "text", "seconds": "duration", "ok": "boolean",
   "counts": {"inputs": "count", "done": "count", "failed": "count", "skipped": "count"},
   "inputs": [{
-    "path": "text", "ok": "boolean", "defect": "boolean", "skipped": "boolean", "seconds": "duration",
+    "path": "path", "ok": "boolean", "defect": "boolean", "skipped": "boolean", "seconds": "duration",
     "sha256": "text", "settings": "text", "units": "text", "yarn_count": "number", "min_gap": "number",
     "creo_absolute_accuracy": "number", "entities": {"*": "number"}, "not_understood": {"*": "number"},
     "messages": [{"severity": "text", "where": "text", "text": "text", "yarn": "text", "at": ["number"]}],

@@ -183,7 +183,7 @@ class Resume(Case):
     def test_a_report_of_something_else(self):
         self.path.write_text("[1, 2]")
         self.assertIn("not a report", self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume"))
-        for value, place in (('{"path": 3}', r"inputs\[0\]\.path is a number"), ("4", r"inputs\[0\] is a number"),
+        for value, place in (('{"path": 3}', r"inputs\[0\]\.path is a number"), ("4", "its input 1 has no path"),
                              ('{"path": "a.txt", "ok": null}', r"inputs\[0\]\.ok is null"),
                              ('{"path": "a.txt", "ok": true, "outputs": 7}', r"inputs\[0\]\.outputs is a number, where a list"),
                              ("[" * 60000 + "]" * 60000, "nested more than 32 deep")):
@@ -232,7 +232,7 @@ class FromOutside(Case):
         self.succeeds("report", "merge", self.path, "-o", "-")
 
     def test_no_json(self):
-        for content, place in (("", "it is no JSON at line 1, column 1"), ('{"inputs": [\n  {"path": "a"},]}', "it is no JSON at line 2, column 18"),
+        for content, place in (("", "it is no JSON at line 1, column 1"), ('{"inputs": [\n  {"path": "a"},]}', "it is no JSON at line 2, column 17"),
                                (b'{"inputs": [{"path": "\xff"}]}', "it is no JSON at line 1, column 2[23]"), ('{"inputs": []} x', "it is no JSON"),
                                ('{"inputs": [{"path": "a", "seconds": 1e999}]}', "a number is too large at line 1"),
                                ('{"inputs": [], "inputs": []}', "an object has two members 'inputs'"),

@@ -7,8 +7,8 @@
 namespace selvage {
 
 TEST(Csv, AFormulaBecomesAText) {
-  for (const std::string value :
-       {"=1+1", "+A1", "-A1", "@SUM(1)", "\tx", "\rx", "\nx", "-", "=\"a\",b", "'=1", "''-x", "-0.9mm", "+inf", "-nan"}) {
+  for (const std::string value : {"=1+1", "+A1", "-A1", "@SUM(1)", "\tx", "\rx", "\nx", "-", "=\"a\",b",
+                                  "'=1", "''-x", "-0.9mm", "+inf", "-nan"}) {
     const std::string cell = csv_value(value);
     EXPECT_TRUE(cell.starts_with("\"'")) << cell;
     const Result<CsvTable> table = read_csv("a,b\n" + cell + ",1\n");

@@ -128,16 +128,16 @@ TEST(Process, OwnTimeLimit) {
   EXPECT_EQ(outcome.ends[0].how, JobEnd::How::timed_out);
 }
 
-// The system ends a process at its limit of processor time by one signal where the limit can be raised, and by
-// another, as of somebody who kills it, where it cannot.
+// The system ends a process at its limit of processor time by one signal where the limit can be raised, and
+// by another, as of somebody who kills it, where it cannot.
 TEST(Process, ProcessorTimeOfTheSystem) {
   for (const rlim_t hard : {rlim_t{1}, rlim_t{5}})
     EXPECT_EQ(in_a_child([hard] {
                 const rlimit limit{1, hard};
                 ::setrlimit(RLIMIT_CPU, &limit);
                 const Outcome outcome = run_all(1, 1, [](std::size_t, const Channel&) {
-                  for (volatile unsigned turns = 0;; turns = turns + 1) {
-                  }
+                  volatile unsigned turns = 0;
+                  while (turns < 2) turns = 1;
                   return 0;
                 });
                 const JobEnd& end = outcome.ends[0];
