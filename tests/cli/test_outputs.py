@@ -47,6 +47,12 @@ class Places(Case):
             self.succeeds("convert", own[0], "-o", self.out / fixed[0].name, "--file-name", "fabric.cad")
             self.assertRegex((self.out / fixed[0].name).read_bytes()[:2000], header)
 
+    def test_a_time_that_is_none(self):
+        for moment in ("yesterday", "", "1.5", "-1", "253402300800"):
+            message = self.fails(2, "convert", GRID, "-o", self.folder / "x.igs", env=environment(SOURCE_DATE_EPOCH=moment))
+            self.assertIn(f"selvage: error: SOURCE_DATE_EPOCH is '{moment}'", message)
+            self.assertEqual(self.names(), [])
+
     def test_an_extension_that_no_format_has(self):
         for arguments, listed in ((("convert", GRID), r"\.igs, .*\.stp"), (("convert", GRID, "--to", "iges"), r"\.igs"),
                                   (("convert", GRID, RING), r"\.igs"), (("relax", PATH), r"\.txt"),
