@@ -165,7 +165,9 @@ Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
     Thumbnail& made = drawings[index].made;
     if (kind == thumbnail_packet::picture && bytes.size() <= most_thumbnail_bytes) made.png = bytes;
     if (kind == thumbnail_packet::note) made.note = shortened(bytes, longest_note);
-    if (kind == packet::message && made.note.empty()) made.note = shortened(reason_in(bytes), longest_note);
+    // Messages have words of the file: they are for who has seen it, as its SHA-256 shows.
+    if (kind == packet::message && made.note.empty() && !drawings[index].digest.empty())
+      made.note = shortened(reason_in(bytes), longest_note);
   };
   pool.finished = [&](std::size_t index, const JobEnd& end) {
     Thumbnail& made = drawings[index].made;

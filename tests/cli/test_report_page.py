@@ -1,6 +1,7 @@
 """`selvage report`: reports joined, and shown on a page, which another parser reads."""
 
 import base64
+import hashlib
 import html.parser
 import json
 import re
@@ -244,6 +245,15 @@ class Merge(Base):
 
 
 class Refusals(Base):
+    def test_no_words_of_a_file_that_the_report_does_not_know(self):
+        """A stranger's report may name any file."""
+        secret = self.folder / "secret.txt"
+        secret.write_text("hidden words\n")
+        for digest, is_shown in ((None, False), ("0" * 64, False), (hashlib.sha256(secret.read_bytes()).hexdigest(), True)):
+            self.report.write_text(json.dumps({"inputs": [{"path": str(secret), **({"sha256": digest} if digest else {})}]}))
+            self.succeeds("report", "html", self.report, "-o", self.folder / "x.html")
+            self.assertEqual("hidden" in (self.folder / "x.html").read_text(), is_shown, digest)
+
     def test_no_reports(self):
         for text, words in (("[1, 2]", "not a report"), ('{"a": 1}', "not a report"), ("{", "not a report"), ("", "not a report"),
                             ('{"inputs": 3}', "not a report"), ('{"inputs": [{"path": "a.txt"}, {"ok": true}]}', "its input 2 has no path"),
