@@ -248,11 +248,11 @@ class Refusals(Base):
     def test_no_words_of_a_file_that_the_report_does_not_know(self):
         """A stranger's report may name any file."""
         secret = self.folder / "secret.txt"
-        secret.write_text("hidden words\n")
+        secret.write_text("confidential words\n")
         for digest, is_shown in ((None, False), ("0" * 64, False), (hashlib.sha256(secret.read_bytes()).hexdigest(), True)):
             self.report.write_text(json.dumps({"inputs": [{"path": str(secret), **({"sha256": digest} if digest else {})}]}))
             self.succeeds("report", "html", self.report, "-o", self.folder / "x.html")
-            self.assertEqual("hidden" in (self.folder / "x.html").read_text(), is_shown, digest)
+            self.assertEqual("confidential" in (self.folder / "x.html").read_text(), is_shown, digest)
 
     def test_no_reports(self):
         for text, words in (("[1, 2]", "not a report"), ('{"a": 1}', "not a report"), ("{", "not a report"), ("", "not a report"),
