@@ -325,8 +325,13 @@ class NamedFiles {
       return error(Kind::malformed, "it uses itself, by itself or by the files that it uses");
     if (open_.size() > deepest)
       return error(Kind::limit, fmt::format("more than {} files use each other in turn", deepest));
+    // Its errors were told where it was used first.
+    if (faulty_.contains(file.path)) return error(Kind::malformed, "it has errors");
     Result<fabric::Fabric> read = fabric_in(file.source, "yarns to use", diagnostics_);
-    if (!read) return read.error();
+    if (!read) {
+      faulty_.insert(file.path);
+      return read.error();
+    }
     if (read->units != unit)
       return error(Kind::unsupported,
                    fmt::format("its unit is {}, that of this text {}: give both the same `units`",
@@ -336,7 +341,10 @@ class NamedFiles {
     resolve(*read, file.source);
     open_.pop_back();
     if (Status fits = budget_.status(); !fits) return fits.error();
-    if (diagnostics_.error_count() > errors) return error(Kind::malformed, "it has errors");
+    if (diagnostics_.error_count() > errors) {
+      faulty_.insert(file.path);
+      return error(Kind::malformed, "it has errors");
+    }
     std::erase_if(read->items,
                   [](const fabric::Item& item) { return std::holds_alternative<fabric::Piece>(item); });
     if (read->items.empty()) return error(Kind::malformed, "it has no yarns");
@@ -362,6 +370,7 @@ class NamedFiles {
   fs::path home_;                              // of the input
   std::vector<fs::path> open_;                 // texts that are being read, each used by the one before it
   std::vector<const fabric::Fabric*> around_;  // the block that is looked at, and what it stands in
+  std::set<fs::path> faulty_;                  // files that were used and have errors
   std::vector<std::string> read_;
 };
 
