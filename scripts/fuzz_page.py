@@ -12,7 +12,7 @@ TABLES = {
 Executions of each target since its last finding, of all campaigns together, each of which begins with what the one before has
 learnt; with the address and undefined behaviour sanitizers of clang. Edges are those of the program's flow that were taken,
 features are edges with how often, libFuzzer's own figures. What stopped a campaign, or was handed in, was mended, is kept in
-`crashers/TARGET` and run by the tests (`fuzz.TARGET`).""",
+`crashers/TARGET` and run by the tests (`fuzz.seeds.TARGET`, `fuzz.crashers.TARGET`).""",
         [
             "what it does",
             "bytes, at most",

@@ -26,9 +26,9 @@ using fabric::Fabric;
 using formats::Descriptor;
 
 // What one execution may cost: chance soon finds fabrics of a million loops, and each is only slow.
-constexpr std::size_t most_yarns = 4;
-constexpr std::size_t most_points = 250;    // control points of a yarn
-constexpr std::size_t most_together = 500;  // of all yarns
+constexpr std::size_t most_yarns = 9;
+constexpr std::size_t most_points = 250;     // control points of a yarn
+constexpr std::size_t most_together = 1000;  // of all yarns
 constexpr std::uint64_t most_data_points = 400;
 constexpr double coarse = 0.03;  // tolerance, of the smallest section
 
@@ -77,20 +77,25 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
 // The fabric's yarns; none where there is something wrong with them or they are too large for a short run.
 std::vector<yarn::Body> bodies_of(const Fabric& fabric, std::string_view bytes) {
   fabric::BuildOptions options;
-  // Parting loops and fitting tubes takes seconds: one input in eight has it done as users have it.
-  if (bytes.size() % 8 != 0) {
-    options.as_published = true;
-    options.tolerance = coarse * fabric::smallest_section(fabric).value_or(0.0);
-  }
+  options.as_published = true;
+  options.tolerance = coarse * fabric::smallest_section(fabric).value_or(0.0);
   options.max_control_points = most_points;
   options.work.points = most_data_points;
   Diagnostics diagnostics;
-  const auto builder = fabric::YarnBuilder::create(fabric, options, diagnostics);
+  const auto published = fabric::YarnBuilder::create(fabric, options, diagnostics);
   std::vector<yarn::Body> bodies;
-  if (!builder || builder->count() > most_yarns) return bodies;
+  if (!published || published->count() > most_yarns) return bodies;
+  // Resolving overlaps takes a second: one input in sixteen has it done as users have it, where it can be
+  // built at all.
+  const bool is_resolved = bytes.size() % 16 == 0;
+  options.as_published = !is_resolved;
+  const auto resolved =
+      is_resolved ? fabric::YarnBuilder::create(fabric, options, diagnostics) : std::nullopt;
+  if (is_resolved && (!resolved || resolved->count() > most_yarns)) return bodies;
+  const fabric::YarnBuilder& builder = is_resolved ? *resolved : *published;
   std::size_t points = 0;
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
+  for (std::size_t i = 0; i < builder.count(); ++i) {
+    Result<yarn::Body> body = builder.build(i);
     if (!body) return {};
     points +=
         static_cast<std::size_t>(body->surface.count_u) * static_cast<std::size_t>(body->surface.count_v);
