@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <vector>
 
 #include "fabric/clearance.h"
 #include "nurbs/roots.h"
@@ -139,22 +140,27 @@ double fit_amplitude(BraidShape& shape, double least, double wanted, const std::
     shape.amplitude = amplitude;
     return crossing_gap(shape, outline, axial_outline);
   };
-  double low = least, best = least, best_gap = -std::numeric_limits<double>::infinity();
-  double high = least + 0.5 * wanted;
+  struct Try {
+    double amplitude, gap;
+  };
+  std::vector<Try> tries;
+  double low = least, high = least + 0.5 * wanted;
   constexpr double most = 2.5, growth = 1.12;
   while (true) {
-    const double gap = gap_at(high);
-    if (gap > best_gap) {
-      best_gap = gap;
-      best = high;
-    }
-    if (gap >= wanted || high > most * least) break;
+    tries.push_back({high, gap_at(high)});
+    if (tries.back().gap >= wanted || high > most * least) break;
     low = high;
     high *= growth;
   }
-  if (best_gap < wanted) {
-    shape.amplitude = best;
-    return best_gap;
+  if (tries.back().gap < wanted) {
+    // A larger amplitude that brings nothing only makes the path steeper: the smallest one near the largest
+    // gap.
+    constexpr double enough = 0.01;  // of the least amplitude
+    const double largest = std::ranges::max(tries, {}, &Try::gap).gap;
+    const double near = std::max(largest - enough * least, std::min(largest, 0.0));
+    const auto chosen = std::ranges::find_if(tries, [&](const Try& tried) { return tried.gap >= near; });
+    shape.amplitude = chosen->amplitude;
+    return chosen->gap;
   }
   nurbs::halve_between(low, high, 10, [&](double middle) { return !(gap_at(middle) >= wanted); });
   return gap_at(high);
