@@ -245,7 +245,7 @@ void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
 void write_loads(TextBuffer& text, const fem::Mesh& mesh) {
   if (mesh.load_cases.empty()) return;
   put_card(text, "TEMPD", {"999", "0."});
-  const std::vector<fem::Support> supports = fem::supports(mesh);
+  const std::vector<fem::NodeSupport> supports = fem::supports(mesh);
   for (std::size_t i = 0; i < mesh.load_cases.size(); ++i) {
     const fem::LoadCase& load = mesh.load_cases[i];
     text << "$ " << load.name << '\n';

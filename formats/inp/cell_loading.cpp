@@ -64,7 +64,7 @@ void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh) {
   const bool is_heated = changes_temperature(mesh);
   const int first = first_unknown(mesh), last = last_unknown(mesh);
-  const std::vector<fem::Support> supports = fem::supports(mesh);
+  const std::vector<fem::NodeSupport> supports = fem::supports(mesh);
   for (const fem::LoadCase& load : mesh.load_cases) {
     text << "** " << load.name << "\n*STEP\n"
          << (conducts(mesh) ? "*HEAT TRANSFER, STEADY STATE\n1, 1" : "*STATIC") << "\n*BOUNDARY, OP=NEW\n";

@@ -155,7 +155,7 @@ double fit_amplitude(BraidShape& shape, double least, double wanted, const std::
   if (tries.back().gap < wanted) {
     // A larger amplitude that brings nothing only makes the path steeper: the smallest one near the largest
     // gap.
-    constexpr double enough = 0.01;  // of the least amplitude
+    constexpr double enough = 0.05;  // of the least amplitude
     const double largest = std::ranges::max(tries, {}, &Try::gap).gap;
     const double near = std::max(largest - enough * least, std::min(largest, 0.0));
     const auto chosen = std::ranges::find_if(tries, [&](const Try& tried) { return tried.gap >= near; });

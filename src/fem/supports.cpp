@@ -10,8 +10,8 @@ namespace {
 
 // Against turning about the axis, of the nodes `members` the one farthest from the line along it through
 // `held`: the displacement that turning makes there.
-Support support_against_turning(const Mesh& mesh, const std::vector<std::size_t>& members, std::size_t held,
-                                int axis) {
+NodeSupport support_against_turning(const Mesh& mesh, const std::vector<std::size_t>& members,
+                                    std::size_t held, int axis) {
   const auto turned = [&](std::size_t n) {
     return Vec3(Vec3::Unit(axis).cross(mesh.nodes[n] - mesh.nodes[held]));
   };
@@ -39,8 +39,8 @@ Groups connected_nodes(const Mesh& mesh) {
   return groups;
 }
 
-std::vector<Support> supports(const Mesh& mesh) {
-  std::vector<Support> found;
+std::vector<NodeSupport> supports(const Mesh& mesh) {
+  std::vector<NodeSupport> found;
   if (!mesh.cell || kind_of_cell(mesh.cell->periodic) == CellKind::piece) return found;
   std::vector<bool> depends(mesh.nodes.size(), false);
   for (const Equation& equation : mesh.equations) depends[equation.front().node] = true;

@@ -12,7 +12,7 @@ namespace selvage::fem {
 
 // A node whose displacements (or potential) are to be zero in every load case, or only the one along x, y or
 // z (0, 1, 2). No force acts there: what moves as a whole is all that the conditions of the cell leave free.
-struct Support {
+struct NodeSupport {
   std::size_t node = 0;
   std::optional<int> direction;
 };
@@ -23,6 +23,6 @@ Groups connected_nodes(const Mesh& mesh);
 // Of a complete cell (fem/complete_cell.h): of each part that nothing connects with another one a node that
 // depends on none (of the part at the cell's corner 0 the node there), and of a beam a second one against
 // turning about its axis. Empty without a periodic axis, where the faces follow the drivers.
-std::vector<Support> supports(const Mesh& mesh);
+std::vector<NodeSupport> supports(const Mesh& mesh);
 
 }  // namespace selvage::fem

@@ -92,72 +92,72 @@ TEST_P(Faults, IsFound) {
   })) << all_of(findings);
 }
 
-constexpr const char* small = "unit_m.igs";
+constexpr const char* small_file = "unit_m.igs";
 constexpr const char* loops = "trimmed.igs";
 INSTANTIATE_TEST_SUITE_P(
     Lines, Faults,
-    testing::Values(Fault{small, 6, 30, "\t", 6, "0x09"},
-                    Fault{small, 1, 3, "\xE9", 1, "0xE9", Severity::warning},
-                    Fault{small, 9, 73, "X", 9, "no section letter"},
-                    Fault{small, 9, 73, "G", 9, "a line of the global section after the directory section"},
-                    Fault{small, 7, 80, "7", 7, "sequence number D7 follows D2: lines are missing"},
-                    Fault{small, 8, 80, "3", 8, "sequence number D3 follows D3: repeated"},
-                    Fault{small, 8, 74, "      x", 8, "not the sequence number 4"},
-                    Fault{small, 7, 74, "3      ", 7, "right-justified", Severity::warning},
-                    Fault{small, 13, 17, "D      5", 13,
-                          "counts 5 lines in the directory section; there are 4"},
-                    Fault{small, 13, 25, "X      4", 13, "where the number of parameter lines is due"}));
+    testing::Values(
+        Fault{small_file, 6, 30, "\t", 6, "0x09"},
+        Fault{small_file, 1, 3, "\xE9", 1, "0xE9", Severity::warning},
+        Fault{small_file, 9, 73, "X", 9, "no section letter"},
+        Fault{small_file, 9, 73, "G", 9, "a line of the global section after the directory section"},
+        Fault{small_file, 7, 80, "7", 7, "sequence number D7 follows D2: lines are missing"},
+        Fault{small_file, 8, 80, "3", 8, "sequence number D3 follows D3: repeated"},
+        Fault{small_file, 8, 74, "      x", 8, "not the sequence number 4"},
+        Fault{small_file, 7, 74, "3      ", 7, "right-justified", Severity::warning},
+        Fault{small_file, 13, 17, "D      5", 13, "counts 5 lines in the directory section; there are 4"},
+        Fault{small_file, 13, 25, "X      4", 13, "where the number of parameter lines is due"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Global, Faults,
     testing::Values(
-        Fault{small, 2, 3, "3", 2, "'3' cannot be the parameter delimiter"},
-        Fault{small, 2, 7, "-", 2, "'-' cannot be the record delimiter"},
-        Fault{small, 2, 9, "9", 2, "no delimiter after a string"},
-        Fault{small, 3, 7, "0.", 3, "scale is not positive"},
-        Fault{small, 3, 10, "2", 3, "unit 2 is MM, but its name is given as 'M'"},
-        Fault{small, 3, 14, "X", 3, "unit 6 is M, but its name is given as 'X'"},
-        Fault{small, 3, 10, "0", 3, "there is no unit 0"},
-        Fault{small, 3, 16, "0", 3, "number of line weights", Severity::warning},
-        Fault{small, 3, 29, "3", 3, "is no date", Severity::warning},
-        Fault{small, 3, 41, "0.E-06", 3, "a resolution (global parameter 19) of 0", Severity::warning},
-        Fault{small, 3, 41, "1.E+03", 3, "lose the shape", Severity::warning},
-        Fault{small, 3, 41, "1.E-40", 3, "finer than the numbers", Severity::warning},
-        Fault{small, 3, 48, "0.5", 3, "the largest coordinate is said to be 0.5", Severity::warning},
-        Fault{small, 3, 54, "12", 3, "there is no version 12", Severity::warning},
-        Fault{small, 3, 57, "9", 3, "there is no drafting standard 9", Severity::warning},
-        Fault{small, 3, 41, "1.x-06", 3, "is no number"}));
+        Fault{small_file, 2, 3, "3", 2, "'3' cannot be the parameter delimiter"},
+        Fault{small_file, 2, 7, "-", 2, "'-' cannot be the record delimiter"},
+        Fault{small_file, 2, 9, "9", 2, "no delimiter after a string"},
+        Fault{small_file, 3, 7, "0.", 3, "scale is not positive"},
+        Fault{small_file, 3, 10, "2", 3, "unit 2 is MM, but its name is given as 'M'"},
+        Fault{small_file, 3, 14, "X", 3, "unit 6 is M, but its name is given as 'X'"},
+        Fault{small_file, 3, 10, "0", 3, "there is no unit 0"},
+        Fault{small_file, 3, 16, "0", 3, "number of line weights", Severity::warning},
+        Fault{small_file, 3, 29, "3", 3, "is no date", Severity::warning},
+        Fault{small_file, 3, 41, "0.E-06", 3, "a resolution (global parameter 19) of 0", Severity::warning},
+        Fault{small_file, 3, 41, "1.E+03", 3, "lose the shape", Severity::warning},
+        Fault{small_file, 3, 41, "1.E-40", 3, "finer than the numbers", Severity::warning},
+        Fault{small_file, 3, 48, "0.5", 3, "the largest coordinate is said to be 0.5", Severity::warning},
+        Fault{small_file, 3, 54, "12", 3, "there is no version 12", Severity::warning},
+        Fault{small_file, 3, 57, "9", 3, "there is no drafting standard 9", Severity::warning},
+        Fault{small_file, 3, 41, "1.x-06", 3, "is no number"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Directory, Faults,
     testing::Values(
-        Fault{small, 8, 6, "126", 8, "the second line is of type 126"},
-        Fault{small, 7, 14, "abc", 7, "is no integer (directory field 2)"},
-        Fault{small, 7, 16, "3", 11, "128 at D3: its parameters begin with '1.0'"},
-        Fault{small, 7, 16, "9", 7, "to begin on line P9, of 4"},
-        Fault{small, 8, 32, "2", 8, "2 parameter lines are counted, and the next one belongs to it too"},
-        Fault{small, 8, 32, "4", 8, "4 parameter lines are counted, and there are 3"},
-        Fault{small, 6, 32, "0", 6, "a count of 0 parameter lines"},
-        Fault{small, 8, 23, "-9", 8, "the colour points to 9"},
-        Fault{small, 8, 24, "9", 8, "there is no colour 9"},
-        Fault{small, 7, 56, "1", 7, "the transformation points to a 110 at D1"},
-        Fault{small, 7, 56, "7", 7, "the transformation points to 7, where no directory entry begins"},
-        Fault{small, 7, 65, "0a", 7, "is not of eight digits"},
-        Fault{small, 7, 67, "04", 7, "the subordinate part is 00 to 03"},
-        Fault{small, 7, 69, "07", 7, "the use part is 00 to 06"},
-        Fault{small, 8, 39, "44", 8, "type 128 has no form 44"},
+        Fault{small_file, 8, 6, "126", 8, "the second line is of type 126"},
+        Fault{small_file, 7, 14, "abc", 7, "is no integer (directory field 2)"},
+        Fault{small_file, 7, 16, "3", 11, "128 at D3: its parameters begin with '1.0'"},
+        Fault{small_file, 7, 16, "9", 7, "to begin on line P9, of 4"},
+        Fault{small_file, 8, 32, "2", 8, "2 parameter lines are counted, and the next one belongs to it too"},
+        Fault{small_file, 8, 32, "4", 8, "4 parameter lines are counted, and there are 3"},
+        Fault{small_file, 6, 32, "0", 6, "a count of 0 parameter lines"},
+        Fault{small_file, 8, 23, "-9", 8, "the colour points to 9"},
+        Fault{small_file, 8, 24, "9", 8, "there is no colour 9"},
+        Fault{small_file, 7, 56, "1", 7, "the transformation points to a 110 at D1"},
+        Fault{small_file, 7, 56, "7", 7, "the transformation points to 7, where no directory entry begins"},
+        Fault{small_file, 7, 65, "0a", 7, "is not of eight digits"},
+        Fault{small_file, 7, 67, "04", 7, "the subordinate part is 00 to 03"},
+        Fault{small_file, 7, 69, "07", 7, "the use part is 00 to 06"},
+        Fault{small_file, 8, 39, "44", 8, "type 128 has no form 44"},
         Fault{loops, 5, 56, "1", 5, "its transformations go in a circle"},
         Fault{loops, 7, 67, "00", 7, "it is part of another entity", Severity::warning}));
 
 INSTANTIATE_TEST_SUITE_P(
     Parameters, Faults,
-    testing::Values(Fault{small, 11, 72, "1", 11, "its parameter line points back to"},
-                    Fault{small, 12, 8, ",", 12, "the parameters end without ';'"},
-                    Fault{small, 9, 1, "100", 9, "its parameters begin with '100'"},
-                    Fault{small, 9, 5, "0.x", 9, "'0.x' is no number"},
-                    Fault{small, 10, 5, "9", 12, "37 values; 109 are due"},
+    testing::Values(Fault{small_file, 11, 72, "1", 11, "its parameter line points back to"},
+                    Fault{small_file, 12, 8, ",", 12, "the parameters end without ';'"},
+                    Fault{small_file, 9, 1, "100", 9, "its parameters begin with '100'"},
+                    Fault{small_file, 9, 5, "0.x", 9, "'0.x' is no number"},
+                    Fault{small_file, 10, 5, "9", 12, "37 values; 109 are due"},
                     Fault{loops, 93, 7, "90H", 93, "a string of 90 characters is longer than what is left"},
-                    Fault{loops, 93, 9, "h", 93, "the h behind a string's length is small"},
+                    Fault{loops, 93, 9, "h", 93, "the h behind a string's length is small_file"},
                     Fault{loops, 89, 7, "9", 89, "142 at D25: points to a 110 at D9"},
                     Fault{loops, 89, 9, "14", 89, "points to 14, where no directory entry begins"},
                     Fault{loops, 89, 9, "25", 89, "points to itself"},
@@ -170,19 +170,19 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Numbers, Faults,
     testing::Values(
-        Fault{small, 10, 27, "2.0", 10, "knot 3 in u is 1 after 2"},
+        Fault{small_file, 10, 27, "2.0", 10, "knot 3 in u is 1 after 2"},
         Fault{loops, 95, 39, "0.0", 95, "the knot 0 in u is there 5 times, at degree 3"},
-        Fault{small, 10, 55, "-1.", 10, "weight 1 is -1"},
-        Fault{small, 10, 55, "3.0", 10, "PROP3 says that it is polynomial, and its weights are 1 to 3"},
-        Fault{small, 10, 13, "1", 10, "PROP1 says that it is closed in u, and its ends are 1",
+        Fault{small_file, 10, 55, "-1.", 10, "weight 1 is -1"},
+        Fault{small_file, 10, 55, "3.0", 10, "PROP3 says that it is polynomial, and its weights are 1 to 3"},
+        Fault{small_file, 10, 13, "1", 10, "PROP1 says that it is closed in u, and its ends are 1",
               Severity::warning},
-        Fault{small, 10, 15, "1", 10, "PROP2 says that it is closed in v", Severity::warning},
-        Fault{small, 10, 19, "1", 10, "said to be periodic in u", Severity::warning},
-        Fault{small, 11, 57, "1.0,0.0", 11, "the range in u is 1 to 0"},
-        Fault{small, 11, 61, "1.5", 11, "the range in u is 0 to 1.5, and the knots allow 0 to 1",
+        Fault{small_file, 10, 15, "1", 10, "PROP2 says that it is closed in v", Severity::warning},
+        Fault{small_file, 10, 19, "1", 10, "said to be periodic in u", Severity::warning},
+        Fault{small_file, 11, 57, "1.0,0.0", 11, "the range in u is 1 to 0"},
+        Fault{small_file, 11, 61, "1.5", 11, "the range in u is 0 to 1.5, and the knots allow 0 to 1",
               Severity::warning},
-        Fault{small, 11, 57, "0.5,1.5", 11, "the range in u is 0.5 to 1.5, and the knots allow 0 to 1"},
-        Fault{small, 11, 57, "0.0,0.0,\n", 11, "columns"}));
+        Fault{small_file, 11, 57, "0.5,1.5", 11, "the range in u is 0.5 to 1.5, and the knots allow 0 to 1"},
+        Fault{small_file, 11, 57, "0.0,0.0,\n", 11, "columns"}));
 
 TEST(Structure, ClosedSurfaceSaidToBeOpen) {
   const std::string bytes = iges_bytes({ring("ring")}, surfaces());

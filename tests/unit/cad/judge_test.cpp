@@ -29,7 +29,7 @@ nurbs::Surface bilinear(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
   return s;
 }
 
-Face face_of(nurbs::Surface surface, int line) {
+Face face_at_line(nurbs::Surface surface, int line) {
   Face face;
   face.surface = std::move(surface);
   face.origin.place = {line, 1};
@@ -57,7 +57,7 @@ Model block() {
           points.push_back(axis == 0   ? corner(side, a, b)
                            : axis == 1 ? corner(a, side, b)
                                        : corner(a, b, side));
-      part.faces.push_back(face_of(bilinear(points[0], points[1], points[2], points[3]), line += 10));
+      part.faces.push_back(face_at_line(bilinear(points[0], points[1], points[2], points[3]), line += 10));
       part.faces.back().reversed = (axis == 1) == (side == 1);
     }
   Model model;
@@ -68,7 +68,7 @@ Model block() {
 
 // The unit square in a plane of 4 x 4, as a hole-free trimmed face on line 5.
 Model trimmed() {
-  Face face = face_of(bilinear({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {4, 4, 0}), 5);
+  Face face = face_at_line(bilinear({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {4, 4, 0}), 5);
   const std::array<Vec3, 4> corners = {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(1, 2, 0)};
   cad::Loop loop;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -199,7 +199,7 @@ Model grid_of(int rows, int columns, const std::function<Vec3(int i, int j)>& co
   Part part;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i)
-      part.faces.push_back(face_of(
+      part.faces.push_back(face_at_line(
           bilinear(corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)), j * columns + i));
   Model model;
   model.parts = {std::move(part)};
@@ -237,7 +237,7 @@ TEST(Judge, WorkGrowsWithTheFaces) {
 TEST(Judge, ManyCopiesAreFoundAtOnce) {
   const auto copies = [](int count) {
     Model model;
-    for (int i = 0; i < count; ++i) model.parts.push_back(alone(face_of(sheet(), 10 * (i + 1))));
+    for (int i = 0; i < count; ++i) model.parts.push_back(alone(face_at_line(sheet(), 10 * (i + 1))));
     return verdict_of(model);
   };
   const Verdict three = copies(3);
@@ -311,7 +311,7 @@ TEST(Judge, NearlyClosedSurface) {
 
 TEST(Judge, FaceThatIsThereTwice) {
   Model model = block();
-  Face again = face_of(swapped(model.parts[0].faces[2].surface), 99);
+  Face again = face_at_line(swapped(model.parts[0].faces[2].surface), 99);
   model.parts.push_back(alone(again));
   const Verdict verdict = verdict_of(model);
   EXPECT_TRUE(verdict.says(defect, "128 at D99: the same face as 128 at D30", 99)) << verdict.text();
@@ -344,13 +344,13 @@ TEST(Judge, AreaOfAHelix) {
       flank.points.emplace_back(std::cos(turn), std::sin(turn), z + static_cast<double>(j) / each);
   }
   Model model;
-  model.parts = {alone(face_of(flank, 70))};
+  model.parts = {alone(face_at_line(flank, 70))};
   EXPECT_FALSE(verdict_of(model).says(defect, "a face without area")) << verdict_of(model).text();
 }
 
 TEST(Judge, FaceWithoutArea) {
   Model model = block();
-  model.parts.push_back(alone(face_of(bilinear({0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}), 70)));
+  model.parts.push_back(alone(face_at_line(bilinear({0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}), 70)));
   EXPECT_TRUE(verdict_of(model).says(defect, "a face without area", 70));
 }
 
@@ -367,7 +367,7 @@ TEST(Judge, KnotsAndWeights) {
   nurbs::Surface torn = sheet();
   const auto last = static_cast<std::size_t>(torn.degree_u);
   for (std::size_t i = 0; i <= last + 1; ++i) torn.knots_u[i] = torn.knots_u[0];
-  model.parts.push_back(alone(face_of(torn, 80)));
+  model.parts.push_back(alone(face_at_line(torn, 80)));
   EXPECT_TRUE(verdict_of(model).says(defect, "times, at degree", 80));
 }
 
@@ -403,7 +403,7 @@ TEST(Judge, ParametersOfAnotherTurn) {
     return loop;
   };
   Model model;
-  model.parts = {alone(face_of(side, 5))};
+  model.parts = {alone(face_at_line(side, 5))};
   for (const double shift : {0.0, -1.0, 1.0}) {
     model.parts[0].faces[0].loops = {loop_from(shift)};
     EXPECT_FALSE(verdict_of(model).says(defect, "leaves the range")) << shift << verdict_of(model).text();
@@ -438,7 +438,7 @@ TEST(Receivers, DegreesResolutionInstancesSlivers) {
   high.points.clear();
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 22; ++i) high.points.emplace_back(9 + i / 21.0, j, 0);
-  model.parts.push_back(alone(face_of(high, 7)));
+  model.parts.push_back(alone(face_at_line(high, 7)));
   EXPECT_TRUE(verdict_of(model).says(warning, "ANSYS reads degrees up to 20: there is one of 21"));
   model = block();
   model.resolution = 1e-9;
@@ -453,7 +453,7 @@ TEST(Receivers, DegreesResolutionInstancesSlivers) {
   EXPECT_TRUE(verdict.says(note, "3 of 102")) << verdict.text();
   model = block();
   model.parts.push_back(
-      alone(face_of(bilinear({9, 0, 0}, {9 + 1e-3, 0, 0}, {9, 1e-3, 0}, {9 + 1e-3, 1e-3, 0}), 77)));
+      alone(face_at_line(bilinear({9, 0, 0}, {9 + 1e-3, 0, 0}, {9, 1e-3, 0}, {9 + 1e-3, 1e-3, 0}), 77)));
   EXPECT_TRUE(verdict_of(model).says(warning, "fail on slivers: 128 at D77", 77)) << verdict_of(model).text();
 }
 

@@ -34,7 +34,7 @@ nurbs::Surface patch() {
 }
 
 // A cylinder of radius 1 and height 3, exact: u round it from 0 to 4.
-nurbs::Surface cylinder() {
+nurbs::Surface unit_cylinder() {
   return stretched(test::cylinder(1, 3), 4, 0);
 }
 
@@ -47,7 +47,7 @@ Loop without_curves(Loop loop) {
   return loop;
 }
 
-Face face_of(const nurbs::Surface& surface, std::vector<Loop> loops) {
+Face bordered_face(const nurbs::Surface& surface, std::vector<Loop> loops) {
   Face face;
   face.surface = surface;
   face.loops = std::move(loops);
@@ -55,7 +55,7 @@ Face face_of(const nurbs::Surface& surface, std::vector<Loop> loops) {
 }
 
 TEST(NaturalBorder, ItsOwnBorderIsOne) {
-  for (const nurbs::Surface& surface : {patch(), cylinder()}) {
+  for (const nurbs::Surface& surface : {patch(), unit_cylinder()}) {
     const Loop border = cad::natural_border(surface, 1e-9);
     ASSERT_EQ(border.edges.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -64,9 +64,9 @@ TEST(NaturalBorder, ItsOwnBorderIsOne) {
       const Vec3 middle = nurbs::evaluate(border.edges[i].flat, border.edges[i].flat.knots[1]);
       EXPECT_LT((nurbs::evaluate(surface, middle.x(), middle.y()) - a.points.front()).norm(), 1e-14);
     }
-    EXPECT_TRUE(cad::has_natural_border(face_of(surface, {border}), 1e-9));
-    EXPECT_TRUE(cad::has_natural_border(face_of(surface, {without_flats(border)}), 1e-9));
-    EXPECT_TRUE(cad::has_natural_border(face_of(surface, {without_curves(border)}), 1e-9));
+    EXPECT_TRUE(cad::has_natural_border(bordered_face(surface, {border}), 1e-9));
+    EXPECT_TRUE(cad::has_natural_border(bordered_face(surface, {without_flats(border)}), 1e-9));
+    EXPECT_TRUE(cad::has_natural_border(bordered_face(surface, {without_curves(border)}), 1e-9));
   }
 }
 
@@ -81,16 +81,16 @@ TEST(NaturalBorder, OtherEdgesAlongTheSameWay) {
     cut.edges.push_back({nurbs::restricted(back, t, t1), {}, -1});
   }
   std::rotate(cut.edges.begin(), cut.edges.begin() + 3, cut.edges.end());
-  Face face = face_of(patch(), {cut});
+  Face face = bordered_face(patch(), {cut});
   EXPECT_TRUE(cad::drop_natural_border(face, 1e-9));
   EXPECT_TRUE(face.loops.empty());
 }
 
 TEST(NaturalBorder, ATubeWithItsRimsAndWithoutItsSeam) {
-  const Loop border = without_flats(cad::natural_border(cylinder(), 1e-9));
+  const Loop border = without_flats(cad::natural_border(unit_cylinder(), 1e-9));
   const Loop first{{border.edges[0]}}, last{{border.edges[2]}};
-  EXPECT_TRUE(cad::has_natural_border(face_of(cylinder(), {first, last}), 1e-9));
-  EXPECT_FALSE(cad::has_natural_border(face_of(cylinder(), {first}), 1e-9));
+  EXPECT_TRUE(cad::has_natural_border(bordered_face(unit_cylinder(), {first, last}), 1e-9));
+  EXPECT_FALSE(cad::has_natural_border(bordered_face(unit_cylinder(), {first}), 1e-9));
 }
 
 // A bent tube with sharp edges: a flat hexagon, 1 x 0.4, sides of unequal lengths, degree 2; the path is
@@ -124,7 +124,7 @@ std::vector<Edge> cut(const nurbs::Curve& curve, const std::vector<double>& shar
 // As solids have it: rims in four edges, whose points are not the surface's samples, and a seam used twice.
 // The last points before the rim closes are nearest to its beginning, but not on its first piece.
 TEST(NaturalBorder, ATubeWithItsRimsInFourEdges) {
-  for (const nurbs::Surface& surface : {cylinder(), hexagonal_tube()})
+  for (const nurbs::Surface& surface : {unit_cylinder(), hexagonal_tube()})
     for (const std::vector<double>& shares :
          {std::vector<double>{0, 0.25, 0.5, 0.75, 1}, {0, 0.16, 0.5, 0.66, 1}, {0, 0.01, 0.02, 0.97, 1}}) {
       SCOPED_TRACE(shares[1]);
@@ -135,19 +135,19 @@ TEST(NaturalBorder, ATubeWithItsRimsInFourEdges) {
         loop.edges.insert(loop.edges.end(), rim.begin(), rim.end());
         loop.edges.push_back(border.edges[side + 1]);
       }
-      EXPECT_TRUE(cad::has_natural_border(face_of(surface, {loop}), 1e-9));
+      EXPECT_TRUE(cad::has_natural_border(bordered_face(surface, {loop}), 1e-9));
       Loop without_last = loop;
       without_last.edges.erase(without_last.edges.begin() + 3);
-      EXPECT_FALSE(cad::has_natural_border(face_of(surface, {without_last}), 1e-9));
+      EXPECT_FALSE(cad::has_natural_border(bordered_face(surface, {without_last}), 1e-9));
       Loop moved = loop;
       for (Vec3& p : moved.edges[3].curve.points) p.z() += 1e-6;
-      EXPECT_FALSE(cad::has_natural_border(face_of(surface, {moved}), 1e-7));
+      EXPECT_FALSE(cad::has_natural_border(bordered_face(surface, {moved}), 1e-7));
     }
 }
 
 // Every point of a closed curve is its own nearest one, also where the curve closes and next to its creases.
 TEST(SampledCurve, FindsItsOwnPoints) {
-  for (const nurbs::Surface& surface : {cylinder(), hexagonal_tube()}) {
+  for (const nurbs::Surface& surface : {unit_cylinder(), hexagonal_tube()}) {
     const nurbs::Curve rim = cad::natural_border(surface, 1e-9).edges[0].curve;
     const cad::SampledCurve samples(rim);
     const double t0 = rim.first_parameter(), length = rim.last_parameter() - t0;
@@ -186,11 +186,11 @@ TEST(Border, IsOneAcrossTheStartOfAClosedCurve) {
 TEST(NaturalBorder, ARimThatBeginsElsewhere) {
   Loop first, last;
   for (const double z : {0.0, 3.0}) {
-    nurbs::Curve circle = without_flats(cad::natural_border(cylinder(), 1e-9)).edges[0].curve;
+    nurbs::Curve circle = without_flats(cad::natural_border(unit_cylinder(), 1e-9)).edges[0].curve;
     for (Vec3& p : circle.points) p = Vec3(-p.y(), p.x(), z);
     (z == 0 ? first : last).edges.push_back({circle, {}, -1});
   }
-  EXPECT_TRUE(cad::has_natural_border(face_of(cylinder(), {first, last}), 1e-9));
+  EXPECT_TRUE(cad::has_natural_border(bordered_face(unit_cylinder(), {first, last}), 1e-9));
 }
 
 TEST(NaturalBorder, WhatIsTrimmedStaysSo) {
@@ -207,12 +207,12 @@ TEST(NaturalBorder, WhatIsTrimmedStaysSo) {
                                                       .weights = {}},
                                                      {},
                                                      -1});
-  EXPECT_FALSE(cad::has_natural_border(face_of(patch(), {corner}), 1e-9));
+  EXPECT_FALSE(cad::has_natural_border(bordered_face(patch(), {corner}), 1e-9));
   // A side that is off by more than the tolerance, in the middle only.
   Loop bulge = without_flats(border);
   bulge.edges[3].curve.points[2].z() += 1e-3;
-  EXPECT_FALSE(cad::has_natural_border(face_of(patch(), {bulge}), 1e-5));
-  EXPECT_TRUE(cad::has_natural_border(face_of(patch(), {bulge}), 1e-3));
+  EXPECT_FALSE(cad::has_natural_border(bordered_face(patch(), {bulge}), 1e-5));
+  EXPECT_TRUE(cad::has_natural_border(bordered_face(patch(), {bulge}), 1e-3));
   // A hole beside the border.
   Loop hole;
   hole.edges.push_back({.curve = {},
@@ -220,21 +220,22 @@ TEST(NaturalBorder, WhatIsTrimmedStaysSo) {
                                  .knots = {0, 0, 1, 2, 3, 3},
                                  .points = {{0.5, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0.5, 1, 0}},
                                  .weights = {}}});
-  Face face = face_of(patch(), {border, hole});
+  Face face = bordered_face(patch(), {border, hole});
   EXPECT_FALSE(cad::drop_natural_border(face, 1e-9));
   EXPECT_EQ(face.loops.size(), 2U);
   // One side twice instead of all four.
-  EXPECT_FALSE(cad::has_natural_border(face_of(patch(), {Loop{{border.edges[0], border.edges[0]}}}), 1e-9));
+  EXPECT_FALSE(
+      cad::has_natural_border(bordered_face(patch(), {Loop{{border.edges[0], border.edges[0]}}}), 1e-9));
 }
 
 // A fan: the last row is one point, the loop its rim alone, or with the seam and the pole.
 TEST(NaturalBorder, Poles) {
-  nurbs::Surface fan = cylinder();
+  nurbs::Surface fan = unit_cylinder();
   for (int i = 0; i < 9; ++i) fan.point(i, 1) = Vec3(0, 0, 3);
   const Loop border = without_flats(cad::natural_border(fan, 1e-9));
   EXPECT_TRUE(border.edges[2].curve.points.empty());
-  EXPECT_TRUE(cad::has_natural_border(face_of(fan, {border}), 1e-9));
-  EXPECT_TRUE(cad::has_natural_border(face_of(fan, {Loop{{border.edges[0]}}}), 1e-9));
+  EXPECT_TRUE(cad::has_natural_border(bordered_face(fan, {border}), 1e-9));
+  EXPECT_TRUE(cad::has_natural_border(bordered_face(fan, {Loop{{border.edges[0]}}}), 1e-9));
 }
 
 TEST(NaturalBorder, OpenKnots) {
@@ -245,7 +246,7 @@ TEST(NaturalBorder, OpenKnots) {
     const Vec3 flat = nurbs::evaluate(edge.flat, edge.flat.knots[1]);
     EXPECT_LT((nurbs::evaluate(surface, flat.x(), flat.y()) - edge.curve.points.front()).norm(), 1e-13);
   }
-  EXPECT_TRUE(cad::has_natural_border(face_of(surface, {without_flats(border)}), 1e-9));
+  EXPECT_TRUE(cad::has_natural_border(bordered_face(surface, {without_flats(border)}), 1e-9));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(Source, QuotesOnlyWhatIsInItsFolder) {
     const Result<Source> source = Source::open(path);
     TextReport report(*source);
     report.set_yarn("words");
-    report.error({source->bytes().data(), 1, 1}, "what is said of a yarn's 'words' is wrong");
+    report.error(spot_at(*source, {1, 1}), "what is said of a yarn's 'words' is wrong");
     Diagnostics found;
     report.hand_over(found);
     return found.messages().front();

@@ -24,7 +24,7 @@ Fabric jersey(int courses, int wales) {
   return fabric;
 }
 
-YarnBuilder builder_of(const Fabric& fabric, const BuildOptions& options) {
+YarnBuilder shape_builder_of(const Fabric& fabric, const BuildOptions& options) {
   Diagnostics diagnostics;
   std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, diagnostics);
   EXPECT_TRUE(builder.has_value());
@@ -38,7 +38,7 @@ TEST(Shapes, CoursesOfAJerseyAreOne) {
     BuildOptions options;
     options.as_published = true;
     options.full_digits = full_digits;
-    const YarnBuilder builder = builder_of(fabric, options);
+    const YarnBuilder builder = shape_builder_of(fabric, options);
     const DecimalGrid grid = full_digits ? DecimalGrid() : DecimalGrid(1e-4 * 0.183e-3);
     std::vector<yarn::Body> bodies;
     for (std::size_t i = 0; i < builder.count(); ++i) {
@@ -65,9 +65,9 @@ TEST(Shapes, CoursesOfAJerseyAreOne) {
 // In any order, by any builder.
 TEST(Shapes, WhatIsKeptChangesNoBody) {
   const Fabric fabric = jersey(6, 4);
-  const YarnBuilder all = builder_of(fabric, {});
+  const YarnBuilder all = shape_builder_of(fabric, {});
   for (std::size_t i = 0; i < all.count(); ++i) {
-    const Result<yarn::Body> known = all.build(i), alone = builder_of(fabric, {}).build(i);
+    const Result<yarn::Body> known = all.build(i), alone = shape_builder_of(fabric, {}).build(i);
     ASSERT_TRUE(known.ok() && alone.ok());
     EXPECT_TRUE(known->surface == alone->surface) << i;
     EXPECT_TRUE(known->axis == alone->axis) << i;
@@ -81,7 +81,7 @@ TEST(Shapes, WhatIsKeptChangesNoBody) {
 // As `relax` does it with what it has moved.
 TEST(Shapes, ABodyThatIsFinishedAnewIsAShapeOfItsOwn) {
   const Fabric fabric = jersey(3, 2);
-  const YarnBuilder builder = builder_of(fabric, {});
+  const YarnBuilder builder = shape_builder_of(fabric, {});
   Result<yarn::Body> body = builder.build(1);
   ASSERT_TRUE(body.ok());
   ASSERT_NE(body->shape, 0U);
@@ -96,7 +96,7 @@ TEST(Shapes, MovedEndsAreTheStandardOnes) {
   for (const yarn::EndStyle style : {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar}) {
     BuildOptions options;
     options.ends = style;
-    const YarnBuilder builder = builder_of(fabric, options);
+    const YarnBuilder builder = shape_builder_of(fabric, options);
     for (std::size_t i = 0; i < builder.count(); ++i) {
       const Result<yarn::Body> body = builder.build(i);
       ASSERT_TRUE(body.ok());

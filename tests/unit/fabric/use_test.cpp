@@ -23,7 +23,7 @@ const std::string head =
     "fabric 1\nthread t\n diameter 0.5\nend\nthread flat\n section ellipse 1 0.3\n twist 100 Z\nend\nthread "
     "odd\n "
     "section polygon\n -0.3 -0.2\n 0.5 -0.1\n 0.1 0.3\n end\n twist 60 Z rotate\nend\n";
-const std::string cloth =
+const std::string cloth_text =
     "weave\nwarp flat 3 pitch 1.5\nweft t 2 pitch 1.2\ndraft plain\nend\nyarn y odd\npath\n0 0 2\n1 0.5 "
     "2.4\n2 0 2\n4 1 "
     "2\nend\nend\n";
@@ -55,14 +55,14 @@ double to_segment(const Vec3& p, const Vec3& from, const Vec3& way) {
   return (p - from).cross(way.normalized()).norm();
 }
 
-// Every control point of a rotated or mirrored cloth is that of the cloth as it stands, mapped.
+// Every control point of a rotated or mirrored cloth_text is that of the cloth_text as it stands, mapped.
 TEST(Uses, RigidMapsAreExact) {
-  const std::vector<yarn::Body> plain = bodies(cloth);
+  const std::vector<yarn::Body> plain = bodies(cloth_text);
   const double s = std::sin(30 * pi / 180), c = std::cos(30 * pi / 180);
   Eigen::Matrix3d turn;
   turn << 1, 0, 0, 0, c, -s, 0, s, c;
   const Vec3 shift(0.25, -3, 7);
-  const std::vector<yarn::Body> turned = bodies(used(cloth, "rotate x 30\nplace 0.25 -3 7"));
+  const std::vector<yarn::Body> turned = bodies(used(cloth_text, "rotate x 30\nplace 0.25 -3 7"));
   ASSERT_EQ(turned.size(), plain.size());
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_EQ(turned[i].name, "b." + plain[i].name);
@@ -79,13 +79,13 @@ TEST(Uses, RigidMapsAreExact) {
 
 // Four quarter turns about any axis come back to the bit.
 TEST(Uses, QuarterTurnsAreExact) {
-  const std::vector<yarn::Body> plain = bodies(cloth),
+  const std::vector<yarn::Body> plain = bodies(cloth_text),
                                 turned = bodies(
-                                    used(cloth, "rotate z 90\nrotate x 90\nrotate y -90\nrotate z 270"));
+                                    used(cloth_text, "rotate z 90\nrotate x 90\nrotate y -90\nrotate z 270"));
   for (const std::string axis : {"x", "y", "z"}) {
     const std::string quarter = "rotate " + axis + " 90\n";
     const std::vector<yarn::Body> round =
-        bodies(used(cloth, quarter + quarter + "rotate " + axis + " -180\n"));
+        bodies(used(cloth_text, quarter + quarter + "rotate " + axis + " -180\n"));
     for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(round[i].surface, plain[i].surface);
   }
   for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(turned[i].volume, plain[i].volume);
@@ -93,14 +93,14 @@ TEST(Uses, QuarterTurnsAreExact) {
 
 // A mirror's image: other hand, normals out of the yarn, faces that still close it.
 TEST(Uses, MirrorsKeepNormalsOutward) {
-  const std::vector<yarn::Body> plain = bodies(cloth);
+  const std::vector<yarn::Body> plain = bodies(cloth_text);
   for (const std::string sealing : {"patch", "fan", "planar"})
     for (const int axis : {0, 1, 2}) {
       BuildOptions options;
       options.ends = sealing == "patch" ? yarn::EndStyle::patch
                      : sealing == "fan" ? yarn::EndStyle::fan
                                         : yarn::EndStyle::planar;
-      const test::Reading reading = read(used(cloth, std::string("mirror ") + "xyz"[axis]));
+      const test::Reading reading = read(used(cloth_text, std::string("mirror ") + "xyz"[axis]));
       ASSERT_TRUE(reading.fabric.has_value()) << reading.text();
       for (const yarn::Body& body : test::built(*reading.fabric, options)) {
         const auto original = std::find_if(plain.begin(), plain.end(),
@@ -160,28 +160,28 @@ TEST(Uses, ShearedPliesStayRoundTheirYarn) {
 
 // Mirrored and sheared at once: the image of what is sheared the other way.
 TEST(Uses, MirroredShear) {
-  const std::vector<yarn::Body> one = bodies(used(cloth, "shear 20\nmirror x")),
-                                other = bodies(used(cloth, "shear -20"));
+  const std::vector<yarn::Body> one = bodies(used(cloth_text, "shear 20\nmirror x")),
+                                other = bodies(used(cloth_text, "shear -20"));
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_FALSE(one[i].inward);
-    EXPECT_NEAR(one[i].length, bodies(used(cloth, "shear 20"))[i].length, 1e-9);
+    EXPECT_NEAR(one[i].length, bodies(used(cloth_text, "shear 20"))[i].length, 1e-9);
     EXPECT_GT(one[i].volume, 0);
   }
 }
 
 TEST(Uses, NestedAreOneMap) {
   const std::string nested =
-      "block a\n" + cloth +
+      "block a\n" + cloth_text +
       "end\nblock b\nuse a as left\nrotate z 25\nend\nuse a as right\nshear 10\nend\nend\n"
       "use b\nmirror y\nplace 1 2 3\nend\n";
   const std::string flat =
-      "block a\n" + cloth +
+      "block a\n" + cloth_text +
       "end\nuse a as b.left\nrotate z 25\nmirror y\nplace 1 2 3\nend\nuse a as b.right\nshear "
       "10\nmirror y\nplace 1 2 3\nend\n";
   const std::vector<yarn::Body> one = bodies(nested), other = bodies(flat);
   ASSERT_EQ(one.size(), other.size());
-  ASSERT_EQ(one.size(), 2 * bodies(cloth).size());
+  ASSERT_EQ(one.size(), 2 * bodies(cloth_text).size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].name, other[i].name);
     EXPECT_EQ(one[i].surface, other[i].surface);
@@ -190,8 +190,8 @@ TEST(Uses, NestedAreOneMap) {
 }
 
 TEST(Uses, RepeatsBeforeItMoves) {
-  const std::vector<yarn::Body> all = bodies(used(cloth, "repeat 3 2 step 5 4\nrotate 90"));
-  const std::vector<yarn::Body> plain = bodies(cloth);
+  const std::vector<yarn::Body> all = bodies(used(cloth_text, "repeat 3 2 step 5 4\nrotate 90"));
+  const std::vector<yarn::Body> plain = bodies(cloth_text);
   ASSERT_EQ(all.size(), 6 * plain.size());
   EXPECT_EQ(all[plain.size()].name, "b.2-1." + plain[0].name);
   const Vec3 step = all[plain.size()].surface.points[0] - all[0].surface.points[0];
@@ -208,7 +208,7 @@ TEST(Uses, RepeatsBeforeItMoves) {
 
 TEST(Uses, NamesAreTheirOwn) {
   const std::string text =
-      "block b\n" + cloth + "end\nuse b\nend\nuse b\nplace 0 0 5\nend\nuse b as top\nplace 0 0 9\nend\n";
+      "block b\n" + cloth_text + "end\nuse b\nend\nuse b\nplace 0 0 5\nend\nuse b as top\nplace 0 0 9\nend\n";
   const std::vector<yarn::Body> all = bodies(text);
   const std::size_t n = all.size() / 3;
   EXPECT_EQ(all[0].name, "b.warp_1");
@@ -258,7 +258,7 @@ TEST(Uses, RefusesWhatCannotBe) {
           .find("'m' is another one elsewhere"),
       std::string::npos);
   // Two to the sixtieth copies.
-  std::string many = "block b0\n" + cloth + "end\n";
+  std::string many = "block b0\n" + cloth_text + "end\n";
   for (int i = 1; i <= 60; ++i)
     many += fmt::format("block b{}\nuse b{}\nend\nuse b{}\nend\nend\n", i, i - 1, i - 1);
   EXPECT_NE(refusal(many + "use b60\nend\n").find("copies of blocks"), std::string::npos);
@@ -288,7 +288,7 @@ void expect_near(const Repeat& repeat, std::array<double, 3> wanted) {  // below
 
 TEST(PlacedRepeats, OfLattices) {
   const auto placed = [](const Repeat& own, const std::string& lines) {
-    const test::Reading reading = read(used(cloth, lines));
+    const test::Reading reading = read(used(cloth_text, lines));
     EXPECT_TRUE(reading.fabric.has_value()) << reading.text();
     return placed_repeat(own, placement_of(std::get<Use>(reading.fabric->items.back()).moves).linear);
   };

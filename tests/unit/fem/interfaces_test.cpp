@@ -15,7 +15,7 @@
 namespace selvage::fem {
 namespace {
 
-constexpr int count = 4;  // cubes along each side
+constexpr int cubes_each_way = 4;  // cubes along each side
 
 // A cube of 4 x 4 x 4 cubes, each of six tetrahedra (H. W. Kuhn's, along the ways from its low to its high
 // corner, so that opposite sides have the same triangles); the region by the middle of a tetrahedron.
@@ -24,15 +24,16 @@ Mesh cube(std::size_t regions, const std::function<std::size_t(const Vec3&)>& re
   Mesh mesh;
   std::vector<std::vector<std::array<std::size_t, 10>>> elements(regions);
   const auto node = [](const std::array<int, 3>& p) {
-    return static_cast<std::size_t>((p[2] * (count + 1) + p[1]) * (count + 1) + p[0]);
+    return static_cast<std::size_t>((p[2] * (cubes_each_way + 1) + p[1]) * (cubes_each_way + 1) + p[0]);
   };
-  for (int z = 0; z <= count; ++z)
-    for (int y = 0; y <= count; ++y)
-      for (int x = 0; x <= count; ++x) mesh.nodes.emplace_back(x, y, z);
-  for (int at = 0; at < count * count * count; ++at) {
+  for (int z = 0; z <= cubes_each_way; ++z)
+    for (int y = 0; y <= cubes_each_way; ++y)
+      for (int x = 0; x <= cubes_each_way; ++x) mesh.nodes.emplace_back(x, y, z);
+  for (int at = 0; at < cubes_each_way * cubes_each_way * cubes_each_way; ++at) {
     std::array<int, 3> ways = {0, 1, 2};
     do {
-      std::array<int, 3> p = {at % count, at / count % count, at / count / count};
+      std::array<int, 3> p = {at % cubes_each_way, at / cubes_each_way % cubes_each_way,
+                              at / cubes_each_way / cubes_each_way};
       std::array<std::size_t, 10> element{};
       element[0] = node(p);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -58,7 +59,7 @@ Mesh cube(std::size_t regions, const std::function<std::size_t(const Vec3&)>& re
   }
   mesh.joining = Joining::cohesive;
   const Status done =
-      complete_cell(mesh, Box3(Vec3::Zero(), Vec3::Constant(count)), {true, true, is_periodic_in_z});
+      complete_cell(mesh, Box3(Vec3::Zero(), Vec3::Constant(cubes_each_way)), {true, true, is_periodic_in_z});
   EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().text);
   return mesh;
 }
@@ -124,7 +125,8 @@ TEST(Interfaces, BothSidesAreOppositeTheirLike) {
     ASSERT_EQ(high.size(), low.size());
     for (std::size_t k = 0; k < low.size(); ++k) {
       EXPECT_EQ(region[high[k]], region[low[k]]);
-      EXPECT_EQ(mesh.nodes[high[k]] - mesh.nodes[low[k]], count * Vec3::Unit(static_cast<int>(axis)));
+      EXPECT_EQ(mesh.nodes[high[k]] - mesh.nodes[low[k]],
+                cubes_each_way * Vec3::Unit(static_cast<int>(axis)));
     }
   }
   EXPECT_EQ(cell.edge_nodes[8].size(), 3U + 2U);  // along z
@@ -163,19 +165,20 @@ TEST(Interfaces, AYarnMayGoOnAsAnotherOne) {
 TEST(Interfaces, ASurfaceThroughAnEdgeIsTiedWhereTheRegionIs) {
   // Planes x - y = 0, -2, 2: through two edges along z, of which the others have one of the regions alone.
   const Mesh mesh = cube(2, [](const Vec3& p) {
-    const double way = p.x() - p.y() + (p.x() < p.y() ? count : 0);
+    const double way = p.x() - p.y() + (p.x() < p.y() ? cubes_each_way : 0);
     return way < 2 ? 0U : 1U;
   });
   const std::vector<std::size_t> region = regions_of_nodes(mesh);
   const std::map<std::size_t, std::size_t> depends = masters(mesh);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     const Vec3& p = mesh.nodes[n];
-    const bool is_high = (p.array() == count).any();
+    const bool is_high = (p.array() == cubes_each_way).any();
     EXPECT_EQ(depends.contains(n), is_high);
     if (!is_high) continue;
     const std::size_t master = depends.at(n);
     EXPECT_EQ(region[master], region[n]);
-    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(mesh.nodes[master][axis], p[axis] == count ? 0 : p[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(mesh.nodes[master][axis], p[axis] == cubes_each_way ? 0 : p[axis]);
   }
 }
 

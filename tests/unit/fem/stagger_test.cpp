@@ -13,7 +13,7 @@ namespace {
 
 using test::Plane;
 
-constexpr double edge = 0.1;
+constexpr double edge_length = 0.1;
 
 // The square of side 2 with its border divided in `pieces` a side: other pieces, another mesh.
 TriangleMesh square(const Plane& plane, const SizeField& field, int pieces) {
@@ -31,15 +31,15 @@ TriangleMesh square(const Plane& plane, const SizeField& field, int pieces) {
   return {};
 }
 
-// Of the points well inside: the share that has one of the other mesh nearer than a quarter of an edge, seen
-// across the gap.
+// Of the points well inside: the share that has one of the other mesh nearer than a quarter of an
+// edge_length, seen across the gap.
 double share_over_points(const TriangleMesh& mesh, const TriangleMesh& other) {
   int all = 0, over = 0;
   for (const Vec3& p : mesh.points) {
     if (p.head<2>().cwiseAbs().maxCoeff() > 0.8) continue;
     ++all;
     over += std::any_of(other.points.begin(), other.points.end(),
-                        [&](const Vec3& q) { return (p - q).head<2>().norm() < edge / 4; });
+                        [&](const Vec3& q) { return (p - q).head<2>().norm() < edge_length / 4; });
   }
   EXPECT_GT(all, 200);
   return static_cast<double>(over) / all;
@@ -54,7 +54,7 @@ double least_angle(const TriangleMesh& mesh) {
 
 struct Pair {
   Plane low, high;
-  SizeField field{edge, 0.3, {}};
+  SizeField field{edge_length, 0.3, {}};
   TriangleMesh below, above;
   explicit Pair(double gap)
       : low(0), high(gap), below(square(low, field, 20)), above(square(high, field, 19)) {}
@@ -66,7 +66,7 @@ struct Pair {
 // Meshes that know nothing of each other have as many points over points as areas have it: pi / 16 over the
 // root of 3/4, 23 %.
 TEST(Stagger, PointsAreNotOverPoints) {
-  Pair pair(edge / 4);
+  Pair pair(edge_length / 4);
   const TriangleMesh before = pair.below;
   EXPECT_NEAR(share_over_points(pair.below, pair.above), 0.227, 0.06);
   pair.run(1);
@@ -85,7 +85,7 @@ TEST(Stagger, PointsAreNotOverPoints) {
 }
 
 TEST(Stagger, SameWithAnyThreads) {
-  Pair one(edge / 4), two(edge / 4);
+  Pair one(edge_length / 4), two(edge_length / 4);
   one.run(1);
   two.run(2);
   EXPECT_EQ(one.below.points, two.below.points);
@@ -93,7 +93,7 @@ TEST(Stagger, SameWithAnyThreads) {
 }
 
 TEST(Stagger, WideGapsAreLeftAlone) {
-  Pair pair(2 * edge);
+  Pair pair(2 * edge_length);
   const std::vector<Vec3> before = pair.below.points;
   pair.run(1);
   EXPECT_EQ(pair.below.points, before);

@@ -153,7 +153,7 @@ TEST(UnitCell, BeamCarriesStretchTwistAndBending) {
     EXPECT_GT(largest_rest(mesh, {0, 0, 0, 0}, [&](const Vec3& at) { return Vec3(turn.cross(at)); }), 0.1);
     const auto twist = [&](const Vec3& at) { return Vec3(Vec3::Unit(a).cross(at)); };
     EXPECT_LT(largest_rest(mesh, {0, 0, 0, 0}, twist), 1e-14);
-    const std::vector<Support> held = supports(mesh);
+    const std::vector<NodeSupport> held = supports(mesh);
     ASSERT_EQ(held.size(), 2U);
     ASSERT_TRUE(held[1].direction);
     EXPECT_GT(
@@ -168,7 +168,7 @@ TEST(UnitCell, ABeamOfYarnsAloneHoldsEach) {
   EXPECT_EQ(supports(mesh).size(), 2U);
   std::set<std::size_t> dependent;
   for (const Equation& equation : mesh.equations) dependent.insert(equation.front().node);
-  for (const Support& support : supports(mesh)) EXPECT_FALSE(dependent.contains(support.node));
+  for (const NodeSupport& support : supports(mesh)) EXPECT_FALSE(dependent.contains(support.node));
 }
 
 TEST(UnitCell, WithoutPeriodsTheWholeFaceFollowsTheStrain) {
