@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{small_file, 9, 5, "0.x", 9, "'0.x' is no number"},
                     Fault{small_file, 10, 5, "9", 12, "37 values; 109 are due"},
                     Fault{loops, 93, 7, "90H", 93, "a string of 90 characters is longer than what is left"},
-                    Fault{loops, 93, 9, "h", 93, "the h behind a string's length is small_file"},
+                    Fault{loops, 93, 9, "h", 93, "the h behind a string's length is small"},
                     Fault{loops, 89, 7, "9", 89, "142 at D25: points to a 110 at D9"},
                     Fault{loops, 89, 9, "14", 89, "points to 14, where no directory entry begins"},
                     Fault{loops, 89, 9, "25", 89, "points to itself"},

@@ -128,8 +128,7 @@ TEST(Overlaps, SharpEdges) {
   const yarn::Body floor = prism("floor", square, Vec3::Zero());
   expect_overlap(floor, prism("square", square, {0.3, 0, 1.9}), 0.1, "face on face");
   expect_overlap(floor, prism("diamond", diamond, {0.3, 0.2, 1.9}), 0.1, "edge on face");
-  const yarn::Body round_one =
-      straight("round_tube", round_tube(0.5), {0, 0, 1.46}, {0, 1, 0}, {1, 0, 0}, 6.0);
+  const yarn::Body round_one = straight("round", round_tube(0.5), {0, 0, 1.46}, {0, 1, 0}, {1, 0, 0}, 6.0);
   expect_overlap(floor, round_one, 0.04, "cylinder across a face");
   expect_overlap(prism("edge", diamond, Vec3::Zero()), round_one, 0.04, "cylinder across an edge");
 }

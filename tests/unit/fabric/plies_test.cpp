@@ -20,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A yarn through these points; with no more statements a straight_line or bent single yarn of diameter 1.
+// A yarn through these points; with no more statements a straight or bent single yarn of diameter 1.
 Fabric fabric_with(Thread thread, std::vector<Vec3> points) {
   Fabric fabric;
   thread.name = "t";

@@ -55,7 +55,7 @@ double to_segment(const Vec3& p, const Vec3& from, const Vec3& way) {
   return (p - from).cross(way.normalized()).norm();
 }
 
-// Every control point of a rotated or mirrored cloth_text is that of the cloth_text as it stands, mapped.
+// Every control point of a rotated or mirrored cloth is that of the cloth as it stands, mapped.
 TEST(Uses, RigidMapsAreExact) {
   const std::vector<yarn::Body> plain = bodies(cloth_text);
   const double s = std::sin(30 * pi / 180), c = std::cos(30 * pi / 180);

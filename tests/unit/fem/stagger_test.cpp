@@ -32,7 +32,7 @@ TriangleMesh square(const Plane& plane, const SizeField& field, int pieces) {
 }
 
 // Of the points well inside: the share that has one of the other mesh nearer than a quarter of an
-// edge_length, seen across the gap.
+// edge, seen across the gap.
 double share_over_points(const TriangleMesh& mesh, const TriangleMesh& other) {
   int all = 0, over = 0;
   for (const Vec3& p : mesh.points) {
