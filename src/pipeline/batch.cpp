@@ -87,6 +87,7 @@ class Batch {
   };
 
   int run_one(std::size_t job, const Channel& channel) const;
+  Verdict run_contained(std::size_t job, const Channel& channel) const;
   void receive(std::size_t job, char kind, std::string_view bytes);
   void finish(std::size_t job, const JobEnd& end);
   void fail(std::size_t job, Message message);
@@ -123,6 +124,9 @@ class Batch {
   Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
 };
 
+// Exit status of a job that had too little memory to begin with, when it could not report anything itself.
+constexpr int out_of_memory_status = 118;
+
 bool is_verdict(int status) {
   for (Verdict verdict : {Verdict::done, Verdict::failed, Verdict::defect, Verdict::skipped})
     if (status == static_cast<int>(verdict)) return true;
@@ -146,6 +150,12 @@ UsedStreams streams_of(const PlannedInput& planned) {
 }
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
+  Verdict verdict = Verdict::failed;
+  const Status done = guarded(options_, [&] { verdict = run_contained(index, channel); });
+  return done ? static_cast<int>(verdict) : out_of_memory_status;
+}
+
+Verdict Batch::run_contained(std::size_t index, const Channel& channel) const {
   const PlannedInput planned = plan_.at(index);
   const Input& input = planned.input;
   Job job(options_, input, planned.outputs, channel);
@@ -161,9 +171,12 @@ int Batch::run_one(std::size_t index, const Channel& channel) const {
   if (const Status contained = contain_job(options_, std::array{input.path, input.other}, places);
       !contained) {
     job.say(contained.error());
-    return static_cast<int>(Verdict::failed);
+    InputReport report(input);
+    report.messages.push_back(contained.error());
+    if (options_.wants_report()) channel.send(packet::report, report.text());
+    return Verdict::failed;
   }
-  return static_cast<int>(run_job(job, entry_of_earlier(input.name()), channel));
+  return run_job(job, entry_of_earlier(input.name()), channel);
 }
 
 std::string Batch::entry_of_earlier(const std::string& path) const {
@@ -255,6 +268,8 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
   work.ended = true;
   std::string reason =
       describe(end, options_.timeout > 0 ? options_.timeout : work.seconds, memory_limit(options_));
+  const bool is_out_of_memory = reason.empty() && end.status == out_of_memory_status;
+  if (is_out_of_memory) reason = fmt::format("needs more memory than {}", memory_limit(options_));
   if (reason.empty() && !is_verdict(end.status)) {
     // A library that ends the process by itself, as the C library does when thread storage cannot be had.
     reason = fmt::format("ended unexpectedly, with status {} (it could not take more memory than {})",
@@ -274,8 +289,9 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                      work.reader, ::strsignal(end.status)),
                  {.file = work.read}));
     else
-      fail(job, error(end.how == JobEnd::How::timed_out || end.how == JobEnd::How::used_up ? Kind::limit
-                                                                                           : Kind::internal,
+      fail(job, error(end.how == JobEnd::How::timed_out || end.how == JobEnd::How::used_up || is_out_of_memory
+                          ? Kind::limit
+                          : Kind::internal,
                       (input.other.empty() ? "this input " : "the comparison ") + reason));
     has_lost_workers_ = true;
   }

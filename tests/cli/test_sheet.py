@@ -267,7 +267,7 @@ end
         path = self.folder / "cloth.txt"
         path.write_text(
             "fabric 1\nthread t\n  diameter 0.2\nend\nweave\n  warp t 4 pitch 0.5\n  weft t 4 pitch 0.5\n"
-            "  draft basket 500/500\nend\n"
+            "  draft basket 250/250\nend\n"
         )
         told = self.succeeds("info", path)
         self.assertIn("no data sheet of this weave: its repeat is far larger", told.stderr)
