@@ -157,7 +157,7 @@ double fit_amplitude(BraidShape& shape, double least, double wanted, const std::
     // gap.
     constexpr double enough = 0.05;  // of the least amplitude
     const double largest = std::ranges::max(tries, {}, &Try::gap).gap;
-    const double near = std::max(largest - enough * least, std::min(largest, 0.0));
+    const double below = largest - enough * least, near = largest < 0.0 ? below : std::max(below, 0.0);
     const auto chosen = std::ranges::find_if(tries, [&](const Try& tried) { return tried.gap >= near; });
     shape.amplitude = chosen->amplitude;
     return chosen->gap;

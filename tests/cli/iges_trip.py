@@ -20,8 +20,11 @@ class IgesTrip(Case):
 
     def expect_same_after_trip(self, iges, *options):
         """`options`: those that the IGES file was written with."""
-        again, text, back = self.folder / "again" / iges.name, self.folder / "trip.txt", self.folder / "back.igs"
-        again.parent.mkdir(exist_ok=True)
+        # The file's name is in its header.
+        again, back = self.folder / "again" / iges.name, self.folder / "back" / iges.name
+        text = (self.folder / "back" / iges.name).with_suffix(".txt")
+        for path in (again, back):
+            path.parent.mkdir(exist_ok=True)
         with self.subTest(file=iges.name, options=options, trip="IGES, IGES"):
             self.convert(iges, again)
             self.assertTrue(iges.read_bytes() == again.read_bytes(), "the IGES file changed")
