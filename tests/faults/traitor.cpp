@@ -434,7 +434,8 @@ bool is_traitor(int file) {
   return size > 0 && std::string(name.data()).ends_with("/traitor.txt");
 }
 
-// A file that is read is mapped or read first; once in a process.
+// Once in a process, at the first call that has the open file: before the program notes when it was changed
+// last.
 void look(int file) {
   static std::atomic<pid_t> begun = 0;
   if (file < 0 || std::getenv("TRAITOR") == nullptr || begun == ::getpid() || !is_traitor(file)) return;
@@ -454,4 +455,19 @@ extern "C" ssize_t read(int file, void* to, size_t size) {
   static auto* const itself = reinterpret_cast<decltype(&read)>(::dlsym(RTLD_NEXT, "read"));
   look(file);
   return itself(file, to, size);
+}
+
+extern "C" ssize_t pread(int file, void* to, size_t size, off_t from) {
+  static auto* const itself = reinterpret_cast<decltype(&pread)>(::dlsym(RTLD_NEXT, "pread"));
+  look(file);
+  return itself(file, to, size, from);
+}
+
+// What a release build calls instead where the compiler has the size of the buffer (_FORTIFY_SOURCE).
+extern "C" ssize_t __read_chk(int file, void* to, size_t size, size_t /*room*/) {
+  return read(file, to, size);
+}
+
+extern "C" ssize_t __pread_chk(int file, void* to, size_t size, off_t from, size_t /*room*/) {
+  return pread(file, to, size, from);
 }
