@@ -71,7 +71,7 @@ class Machine {
   std::set<int> back_needles_;                // that hold something
   double racking_ = 0, whole_ = 0;
   double least_swept_ = 0, most_swept_ = 0;       // rackings since loops were looked at
-  std::size_t passed_ = 0;                        // needles and loops that were looked at
+  std::size_t passed_ = 0;                        // needles and loops visited
   std::vector<std::pair<Spot, Needle>> ladders_;  // dropped since the last loop was made
   int least_used_ = most_number + 1, most_used_ = -most_number - 1;
 };

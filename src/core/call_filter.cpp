@@ -78,7 +78,7 @@ constexpr std::array passing_calls = {
     SYS_brk,
     SYS_mincore,
     SYS_msync,
-    // threads, and what a process is told of itself and the machine
+    // threads, and facts about the process and the machine
     SYS_futex,
     SYS_sched_yield,
     SYS_sched_getaffinity,
