@@ -7,6 +7,7 @@ not computed again while the cell's text, the options, the program and the scrip
 import argparse
 import dataclasses
 import datetime
+import functools
 import hashlib
 import json
 import math
@@ -174,6 +175,7 @@ def quantities_of(run, result):
     return {f"{letter} {axis}": tensor[k][k] for k, axis in enumerate("xyz")}
 
 
+@functools.cache
 def closed_forms(cell):
     """Name -> value of what is known without a mesh: of arrays of cylinders along x."""
     if not cell.startswith("fibres_"):

@@ -18,13 +18,11 @@ Machine::Machine(const Header& header, TextReport& report) : header_(header), re
     graph_.carriers.emplace_back(name);
   }
   states_.resize(graph_.carriers.size());
-  for (std::vector<Stack>& stacks : stacks_) stacks.resize(2 * most_number + 1);
 }
 
 Machine::Stack& Machine::stack(const Needle& needle) {
   const std::size_t list = (needle.bed == Bed::front ? 0U : 1U) + (needle.is_slider ? 2U : 0U);
-  const int from_first = needle.number + most_number;
-  return stacks_[list][static_cast<std::size_t>(from_first)];
+  return stacks_[list][needle.number];
 }
 
 // At racking R the back needle B faces the front needle B + R.

@@ -67,8 +67,9 @@ class Machine {
   std::vector<State> states_;
   std::map<std::vector<int>, std::uint32_t> set_numbers_;
   std::vector<int> set_;
-  std::array<std::vector<Stack>, 4> stacks_;  // front, back, front sliders, back sliders
-  std::set<int> back_needles_;                // that hold something
+  std::array<std::unordered_map<int, Stack>, 4>
+      stacks_;                  // by needle: front, back, front sliders, back sliders
+  std::set<int> back_needles_;  // that hold something
   double racking_ = 0, whole_ = 0;
   double least_swept_ = 0, most_swept_ = 0;       // rackings since loops were looked at
   std::size_t passed_ = 0;                        // needles and loops visited

@@ -85,7 +85,8 @@ fs::path part_path(const fs::path& whole, int number) {
 std::optional<int> part_number(const fs::path& part) {
   const std::string stem = part.stem().string();
   const std::size_t point = stem.rfind('.');
-  if (point == std::string::npos || point == 0) return std::nullopt;
+  // Of "..2." the whole would be "..".
+  if (point == std::string::npos || stem.find_first_not_of('.') >= point) return std::nullopt;
   int number = 0;
   const char* const end = stem.data() + stem.size();
   const auto [stop, failure] = std::from_chars(stem.data() + point + 1, end, number);

@@ -130,13 +130,13 @@ class Gmsh(Case):
                 self.judge(sample, suffix, sizes, *options, how=how)
 
     def test_plain4_grid(self):
-        self.every_form(GRID, (0.05, 0.035, 0.025))
+        self.every_form(GRID, (0.05, 0.035))
 
     def test_plain4_path(self):
-        self.every_form(PATH, (0.05, 0.035, 0.025))
+        self.every_form(PATH, (0.05, 0.035))
 
     def test_ring(self):
-        self.every_form(RING, (0.5, 0.35, 0.25), surfaces="loop")
+        self.every_form(RING, (0.5, 0.35), surfaces="loop")
 
 
 if __name__ == "__main__":

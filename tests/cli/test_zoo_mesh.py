@@ -1,4 +1,5 @@
-"""Every sample with yarns passes `mesh` as it comes, and meshio finds every yarn whole in what was written.
+"""Samples with yarns pass `mesh` as they come, and meshio finds every yarn whole in what was written: of the smallest sample of each
+family, every night of all samples (SELVAGE_EVERYTHING=1).
 
 Exit code 0 of `mesh` says that no two yarns overlap. SELVAGE_ZOO=I/N takes the I-th of N parts of the samples. Edges are as
 long as gives every yarn its volume to 1 %, with middle nodes on the surfaces.
@@ -9,16 +10,20 @@ import os
 import subprocess
 import unittest
 
-from program import Case, SAMPLES, ROOT, run
+from program import EVERYTHING, Case, SAMPLES, ROOT, run, smallest_of_each_family
 
 PYTHON = os.environ.get("SELVAGE_MESHIO_PYTHON", "/usr/bin/python3")  # with meshio
 READER = ROOT / "tests" / "formats" / "mesh" / "yarn_volumes.py"
-ZOO = sorted(path for path in SAMPLES.iterdir() if path.suffix in (".txt", ".wif"))
 PART, PARTS = map(int, os.environ.get("SELVAGE_ZOO", "0/1").split("/"))
 
 
 def has_yarns(sample):
     return sample.suffix == ".wif" or not any(line.startswith("piece") for line in sample.read_text().splitlines())
+
+
+def samples():
+    every = sorted(path for path in SAMPLES.iterdir() if path.suffix in (".txt", ".wif") and has_yarns(path))
+    return every if EVERYTHING else smallest_of_each_family(every)
 
 
 class ZooMesh(Case):
@@ -53,9 +58,7 @@ class ZooMesh(Case):
         self.assertLess(error, 0.01)
 
     def test_every_sample(self):
-        for sample in ZOO[PART::PARTS]:
-            if not has_yarns(sample):
-                continue
+        for sample in samples()[PART::PARTS]:
             with self.subTest(sample=sample.name):
                 self.judge(sample)
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <initializer_list>
 
 namespace selvage::fuzz {
@@ -83,8 +84,12 @@ class Writer {
   // One of 256 between both ends.
   double number(double low, double high) { return low + (high - low) * choice(256) / 255.0; }
 
+  // A length in widths of the widest section, so that most fabrics have room for their yarns.
+  double widths(double low, double high) { return width_ * number(low, high); }
+
   std::string section() {
     const double width = number(0.1, 1.5), height = width * number(0.1, 1.2);
+    width_ = std::max({width_, width, height});
     switch (choice(5)) {
       case 0:
         return fmt::format("circle {}", height);
@@ -108,8 +113,8 @@ class Writer {
   std::string threads() { return one_of({"a", "b", "a,b", "b,a,a"}); }
 
   void weave() {
-    line("weave\n warp {} {} pitch {}", threads(), 1 + choice(4), number(0.3, 4));
-    line(" weft {} {} pitch {}", threads(), 1 + choice(4), number(0.3, 4));
+    line("weave\n warp {} {} pitch {}", threads(), 1 + choice(4), widths(0.6, 4));
+    line(" weft {} {} pitch {}", threads(), 1 + choice(4), widths(0.6, 4));
     if (choice(4) == 1) {
       line(" profile straight\n layers {}", 1 + choice(2));
       line(" binder {} every {} levels {} {}", one_of({"a", "b"}), 1 + choice(2), choice(3), choice(3));
@@ -149,9 +154,9 @@ class Writer {
          : form == 5 ? "jacquard"
                      : "",
          form == 5 ? "a,b" : one_of({"a", "b", "a,b"}), 1 + choice(3),
-         has_pitches ? fmt::format(" pitch {}", number(0.2, 2)) : "", 1 + choice(4),
-         has_pitches ? fmt::format(" pitch {}", number(0.2, 2)) : "");
-    if (choice(4) == 1) line(" loop {}", number(0.5, 8));
+         has_pitches ? fmt::format(" pitch {}", widths(1, 5)) : "", 1 + choice(4),
+         has_pitches ? fmt::format(" pitch {}", widths(2, 8)) : "");
+    if (choice(4) == 1) line(" loop {}", widths(5, 30));
     if (choice(3) == 1) line(" method {}", one_of({"uniform", "chord", "centripetal"}));
     const bool is_opposite = form == 3 && choice(3) == 1;
     if (is_opposite) line(" gating opposite{}\n feeds {}", choice(2) == 1 ? " 2" : "", 1 + choice(3));
@@ -183,8 +188,8 @@ class Writer {
         lapping += fmt::format("{}{}-{}", lapping.empty() ? "" : "/", choice(4), choice(4));
       line(" bar {} {}//{}", one_of({"a", "b"}), lapping, one_of({"", " fall-plate"}));
     }
-    line(" wales {} pitch {}\n courses {} pitch {}", 1 + choice(3), number(0.3, 6), 1 + choice(4),
-         number(0.3, 6));
+    line(" wales {} pitch {}\n courses {} pitch {}", 1 + choice(3), widths(1, 9), 1 + choice(4),
+         widths(1, 9));
     if (choice(2) == 1) line(" stitch {}", one_of({"closed", "open"}));
     line("end");
   }
@@ -193,10 +198,10 @@ class Writer {
     line("braid\n thread {}\n carriers {}\n pattern {}/{}", one_of({"a", "b"}),
          flat ? 2 + choice(5) : 2 * (1 + choice(4)), 1 + choice(2), 1 + choice(2));
     if (flat)
-      line(" flat{}", choice(2) == 1 ? fmt::format(" {}", number(1, 12)) : "");
+      line(" flat{}", choice(2) == 1 ? fmt::format(" {}", widths(3, 20)) : "");
     else
-      line(" {} {}", one_of({"radius", "planar"}), number(0.3, 6));
-    line(" angle {}\n length {}", number(5, 85), number(0.5, 20));
+      line(" {} {}", one_of({"radius", "planar"}), widths(0.5, 9));
+    line(" angle {}\n length {}", number(5, 85), widths(1, 30));
     if (choice(3) == 1) line(" axial {} {}", one_of({"a", "b"}), 1 + choice(3));
     line("end");
   }
@@ -207,7 +212,7 @@ class Writer {
       line("yarn y{} {}\n{} path {}", i, one_of({"a", "b"}), closed ? " closed\n" : "",
            one_of({"chord", "uniform", "centripetal", "polyline", "control", "loop"}));
       for (int row = 0, rows = 3 + choice(6); row < rows; ++row)
-        line("  {} {} {}", row * 0.7 + number(0, 0.6), number(-2, 2), number(-1, 1));
+        line("  {} {} {}", row * 2.0 * width_ + widths(0, 1.5), widths(-2, 2), widths(-1, 1));
       line(" end\n ends {}\nend", one_of({"patch", "fan", "planar", "none"}));
     }
     if (choice(4) == 1)
@@ -238,16 +243,17 @@ class Writer {
     line("end");
   }
   void cell() {
-    const double x = number(-2, 2), y = number(-2, 2), z = number(-2, 0);
+    const double x = widths(-2, 2), y = widths(-2, 2), z = widths(-2, 0);
     if (choice(4) == 1)
-      return line("cell vectors {} 0 0  {} {} 0  0 0 {} at {} {} {}\n matrix epoxy\nend", number(0.3, 8),
-                  number(-2, 2), number(0.3, 8), number(0.3, 4), x, y, z);
-    line("cell {} {} {}  {} {} {}\n matrix epoxy\n periodic x y\nend", x, y, z, x + number(0.3, 8),
-         y + number(0.3, 8), z + number(0.3, 4));
+      return line("cell vectors {} 0 0  {} {} 0  0 0 {} at {} {} {}\n matrix epoxy\nend", widths(1, 10),
+                  widths(-2, 2), widths(1, 10), widths(1, 5), x, y, z);
+    line("cell {} {} {}  {} {} {}\n matrix epoxy\n periodic x y\nend", x, y, z, x + widths(1, 10),
+         y + widths(1, 10), z + widths(1, 5));
   }
 
   std::string_view bytes_;
   std::string text_;
+  double width_ = 0;  // of the widest section
 };
 
 }  // namespace

@@ -30,26 +30,27 @@ def split_sections(data):
     return sections
 
 
+def end_of(ends, text, at):
+    found = ends.search(text, at)
+    return found.start() if found else len(text)
+
+
 def tokens(text, delimiter, record, at=0):
     """The values from `at` to the record delimiter: strings as a tuple of one, the rest as bare text; and where it
     ended."""
-    values = []
+    values, ends, counted = [], re.compile(f"[{re.escape(delimiter + record)}]"), re.compile(r"(\d+) *H")
     while True:
         while at < len(text) and text[at] == " ":
             at += 1
-        string = re.compile(r"(\d+) *H").match(text, at)
+        string = counted.match(text, at)
         if string:
             at = string.end() + int(string.group(1))
             need(at <= len(text), "a string runs out of its record")
             values.append((text[string.end() : at],))
-            rest = at
-            while at < len(text) and text[at] not in delimiter + record:
-                at += 1
+            rest, at = at, end_of(ends, text, at)
             need(text[rest:at].strip() == "", "text after a string: {!r}", text[rest:at])
         else:
-            start = at
-            while at < len(text) and text[at] not in delimiter + record:
-                at += 1
+            start, at = at, end_of(ends, text, at)
             values.append(text[start:at].replace(" ", ""))
         need(at < len(text), "no record delimiter")
         at += 1

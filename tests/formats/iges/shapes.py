@@ -4,6 +4,7 @@ each. For iges_model.py; the standard library only.
 Every curve has `at(t)` and a range `t0, t1`; every surface `at(u, v)` and `u0, u1, v0, v1`, None where it has no end. Both
 give placed points. `off(p)`: how far a point is from it, exactly for the unbounded ones, else by Gauss-Newton."""
 
+import heapq
 import math
 
 from bspline import Curve as SplineCurve, Surface as SplineSurface, cross, dot, minus
@@ -230,6 +231,7 @@ class Surface:
         self.formula, self.place = formula, Place()
         self.range = (u0, u1, v0, v1)
         self.normal_formula = normal
+        self.grids = {}
 
     def placed(self, place):
         other = Surface(self.formula, *self.range, self.normal_formula)
@@ -265,16 +267,21 @@ class Surface:
             return abs(self.off_formula(q)) * factor
         return self.nearest(p)[0]
 
+    def places(self, grid):
+        """Points of a grid of so many steps each way, with their parameters."""
+        if grid not in self.grids:
+            u0, u1, v0, v1 = self.range
+            pairs = [
+                (u0 + (u1 - u0) * i / grid, v0 + (v1 - v0) * j / grid) for i in range(grid + 1) for j in range(grid + 1)
+            ]
+            self.grids[grid] = [(self.at(u, v), u, v) for u, v in pairs]
+        return self.grids[grid]
+
     def nearest(self, p, grid=24):
         u0, u1, v0, v1 = self.range
-        best = []
-        for i in range(grid + 1):
-            for j in range(grid + 1):
-                u, v = u0 + (u1 - u0) * i / grid, v0 + (v1 - v0) * j / grid
-                best.append((norm(minus(self.at(u, v), p)), u, v))
-        best.sort()
+        best = heapq.nsmallest(3, ((math.dist(point, p), u, v) for point, u, v in self.places(grid)))
         result = best[0]
-        for _, u, v in best[:3]:
+        for _, u, v in best:
             for _ in range(30):
                 gap = minus(p, self.at(u, v))
                 a, b = self.slopes(u, v)

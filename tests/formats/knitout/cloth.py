@@ -129,12 +129,24 @@ class Cloth:
         return self.ways[cell, turn]
 
 
+SEEN = np.linalg.qr(np.array([[1, 0.0137, 0.0211], [0.0171, 1, -0.0193], [-0.0151, 0.0223, 1]]))[0]
+
+
+def beside(segments, low, high):
+    """Those of n x 2 x 3 whose boxes, seen along z, meet that of `low` and `high`."""
+    least, most = segments[:, :, :2].min(axis=1), segments[:, :, :2].max(axis=1)
+    return segments[np.all((most >= low[:2]) & (least <= high[:2]), axis=1)]
+
+
 def linking_number(first, second):
     """Of two closed polygons: half the sum of the signs of their crossings, seen along a direction that meets no corner."""
-    rotation = np.linalg.qr(np.array([[1, 0.0137, 0.0211], [0.0171, 1, -0.0193], [-0.0151, 0.0223, 1]]))[0]
-    first, second = first @ rotation, second @ rotation
-    a, b = first[:-1, None, :], np.diff(first, axis=0)[:, None, :]
-    c, d = second[None, :-1, :], np.diff(second, axis=0)[None, :, :]
+    first, second = (np.stack([line[:-1], line[1:]], axis=1) for line in (first @ SEEN, second @ SEEN))
+    second = beside(second, first.min(axis=(0, 1)), first.max(axis=(0, 1)))
+    if not len(second):
+        return 0
+    first = beside(first, second.min(axis=(0, 1)), second.max(axis=(0, 1)))
+    a, b = first[:, None, 0], (first[:, 1] - first[:, 0])[:, None]
+    c, d = second[None, :, 0], (second[:, 1] - second[:, 0])[None]
     cross = b[..., 0] * d[..., 1] - b[..., 1] * d[..., 0]
     gap = c - a
     with np.errstate(divide="ignore", invalid="ignore"):

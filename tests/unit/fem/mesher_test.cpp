@@ -185,9 +185,9 @@ TEST(Mesher, LimitsAndWrongOptions) {
   EXPECT_EQ(kind({.order = 3}), Kind::usage);
   EXPECT_EQ(kind({.size = -1}), Kind::usage);
   EXPECT_EQ(kind({.min_dihedral = 75}), Kind::usage);
-  EXPECT_EQ(kind({.size = 0.01, .timeout = 0.01}), Kind::limit);
+  EXPECT_EQ(kind({.size = 0.04, .timeout = 0.01}), Kind::limit);
   if (!sanitized) {
-    EXPECT_EQ(kind({.size = 0.02, .memory = 64}), Kind::limit);
+    EXPECT_EQ(kind({.size = 0.03, .memory = 64}), Kind::limit);
   }
   EXPECT_EQ(mesh_yarns({}, {}, Unit::mm, {}, diagnostics).error().kind, Kind::geometry);
 }
