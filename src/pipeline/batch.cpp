@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <iterator>
+#include <new>
 
 #include "core/clock.h"
 #include "core/console.h"
@@ -150,9 +151,11 @@ UsedStreams streams_of(const PlannedInput& planned) {
 }
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
-  Verdict verdict = Verdict::failed;
-  const Status done = guarded(options_, [&] { verdict = run_contained(index, channel); });
-  return done ? static_cast<int>(verdict) : out_of_memory_status;
+  try {
+    return static_cast<int>(run_contained(index, channel));
+  } catch (const std::bad_alloc&) {  // anything else is a crash, and reported as one
+    return out_of_memory_status;
+  }
 }
 
 Verdict Batch::run_contained(std::size_t index, const Channel& channel) const {

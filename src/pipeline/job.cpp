@@ -69,7 +69,8 @@ void Job::say_rest() {
 
 void Job::show(Message message, double badness) {
   if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
-  if (options.sweep.wanted) message.text += fmt::format(" [{}]", input.name().substr(input.path.size() + 1));
+  if (!input.settings.empty())
+    message.text += fmt::format(" [{}]", input.name().substr(input.path.size() + 1));
   if (options.all || tally_.take(message, badness)) tell(std::move(message));
 }
 

@@ -110,6 +110,14 @@ class Sweep(Case):
             self.assertIn(f"{given}", result.stderr)
             self.assertIn(words, result.stderr)
 
+    def test_an_input_that_fails_without_a_parameter(self):
+        path = self.folder / "wrong.txt"
+        path.write_text("fabric 1\nyarn\n")
+        done = run("sweep", path, "--csv", self.folder / "out.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, rf"^{path}:2:\d+: error: [^\[]*\n")
+        self.assertIn("1 failed", done.stderr)
+
     def test_variants_that_fail_have_a_row(self):
         result, rows = self.sweep("--set", "distance=0.1,1", code=1)
         self.assertEqual([row["result"] for row in rows], ["failed", "ok"])
