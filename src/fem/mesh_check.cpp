@@ -43,16 +43,20 @@ Status check_input(std::span<const Vec3> points, std::span<const Triangle> trian
   return {};
 }
 
-// The faces of all cells, sorted; cells are turned round where they are inverted.
+// The faces of all cells, sorted. TetGen gives all cells one orientation: all are turned round, or none. The
+// sign of one flat cell's volume is rounding, and turned alone it would no longer fit its neighbours.
 Result<std::vector<CellSide>> sorted_faces(TetMesh& mesh, std::span<const Vec3> points) {
   if (mesh.cells.empty()) return wrong("TetGen made no tetrahedra");
   if (mesh.points.size() < points.size() || !std::equal(points.begin(), points.end(), mesh.points.begin()))
     return wrong("TetGen did not keep the points of the surface");
-  for (auto& cell : mesh.cells) {
+  double volume = 0;
+  for (const auto& cell : mesh.cells) {
     for (const std::uint32_t corner : cell)
       if (corner >= mesh.points.size()) return wrong("a tetrahedron has a point that is not there");
-    if (six_volumes(mesh.points, cell) < 0) std::swap(cell[2], cell[3]);
+    volume += six_volumes(mesh.points, cell);
   }
+  if (volume < 0)
+    for (auto& cell : mesh.cells) std::swap(cell[2], cell[3]);
   return sorted_sides(mesh.cells, mesh.points.size());
 }
 

@@ -14,11 +14,11 @@ namespace selvage::fem {
 Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles,
                      std::span<const Sides> sides);
 
-// Turns inverted cells round and fills TetMesh::regions: cells that share a face which is none of the
-// triangles are of one region, and triangles say of which. Then: the first points are the job's to the bit,
-// every triangle is a face of cells of its two regions, nothing else is outside, and the volume of each
-// region is the enclosed one to 1e-9. Errors: geometry where the boundary is another one, as where triangles
-// are in each other's way; internal.
+// Turns all cells round where they are inverted, and fills TetMesh::regions: cells that share a face which is
+// none of the triangles are of one region, and triangles say of which. Then: the first points are the job's
+// to the bit, every triangle is a face of cells of its two regions, nothing else is outside, and the volume
+// of each region is the enclosed one to 1e-9. Errors: geometry where the boundary is another one, as where
+// triangles are in each other's way; internal.
 Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles,
                     std::span<const Sides> sides);
 

@@ -36,7 +36,8 @@ struct TetgenLimits {
 
 struct TetMesh {
   std::vector<Vec3> points;  // the job's own first, to the bit
-  // ((p1-p0) x (p2-p0)) . (p3-p0) >= 0: between triangles of one plane there can be flat ones.
+  // ((p1-p0) x (p2-p0)) . (p3-p0) >= 0 but for rounding: between triangles of one plane there can be flat
+  // ones.
   std::vector<std::array<std::uint32_t, 4>> cells;
   std::vector<std::uint32_t> regions;  // of each cell
 };

@@ -7,6 +7,7 @@
 
 #include "core/module.h"
 #include "core/sanitized.h"
+#include "fem/mesh_check.h"
 #include "fem/skin.h"
 #include "places.h"
 #include "unit/fem/bodies.h"
@@ -204,6 +205,21 @@ TEST(TetgenWorker, GarbageIsAnError) {
     ASSERT_FALSE(mesh.ok()) << script;
     EXPECT_EQ(mesh.error().kind, Kind::internal) << script;
   }
+}
+
+// A pyramid over a square whose two diagonals part it in the surface and in the cells: between them is a flat
+// cell, the sign of whose volume is rounding. Turned by itself it would show the same side as its neighbours.
+TEST(TetgenWorker, AllCellsAreTurnedRoundOrNone) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, -1e-13}, {0.5, 0.5, 1}};
+  const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  const std::vector<Sides> sides(triangles.size());
+  const std::vector<std::array<std::uint32_t, 4>> cells = {{0, 1, 3, 4}, {1, 2, 3, 4}, {2, 0, 1, 3}};
+  TetMesh mesh{.points = points, .cells = cells, .regions = {}};
+  ASSERT_TRUE(find_regions(mesh, points, triangles, sides).ok());
+  EXPECT_EQ(mesh.cells, cells);
+  for (auto& cell : mesh.cells) std::swap(cell[2], cell[3]);
+  ASSERT_TRUE(find_regions(mesh, points, triangles, sides).ok());
+  EXPECT_EQ(mesh.cells, cells);
 }
 
 }  // namespace
