@@ -163,6 +163,9 @@ def main():
     parse.add_argument("--batch", type=int, default=25, help="fabrics in one call of each command")
     parse.add_argument("--family", choices=[*generator.FAMILIES], help="only this kind of fabric")
     parse.add_argument(
+        "--skip", choices=[*generator.FAMILIES], nargs="+", default=[], help="leave out seeds of these kinds of fabric"
+    )
+    parse.add_argument(
         "--shrink", type=int, default=60, help="calls that shrinking one kind of failure may take; 0: none"
     )
     parse.add_argument("--refusals", action="store_true", help="list refusals and warnings by kind")
@@ -175,7 +178,11 @@ def main():
         "--table", action="store_true", help="write the results of all that --record holds into README.md"
     )
     given = parse.parse_args()
-    seeds = range(given.seed, given.seed + given.count)
+    seeds = [
+        seed
+        for seed in range(given.seed, given.seed + given.count)
+        if generator.fabric(seed, given.family)[0] not in given.skip
+    ]
     batches = [seeds[i : i + given.batch] for i in range(0, len(seeds), given.batch)]
     tally = Tally()
     with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
