@@ -52,12 +52,12 @@ Shafts each_once(Shafts shafts) {
 }
 
 // The shafts or treadles that an entry names. Zeros say "none" and are left out.
-Shafts named(const Numbered& line, const Counted& counted, TextReport& report) {
+Shafts named(const Numbered& line, const Counted& counted, Surplus& surplus, TextReport& report) {
   std::optional<Shafts> values = whole_numbers(*line.entry, report);
   if (!values) return {};
   std::erase(*values, 0);
   for (const int value : *values)
-    if (!is_within(value, counted, *line.entry, report)) return {};
+    if (!is_within(value, counted, *line.entry, surplus, report)) return {};
   return each_once(std::move(*values));
 }
 
@@ -80,11 +80,13 @@ std::optional<Threading> read_threading(const Ini& ini, const Loom& loom, TextRe
   Threading threading;
   const std::vector<Numbered> lines = numbered(*section, loom.warp, report);
   threading.ends = reach(*section, lines, loom.warp, report);
+  Surplus surplus(loom.shafts);
   for (const Numbered& line : lines) {
-    const Shafts shafts = named(line, loom.shafts, report);
+    const Shafts shafts = named(line, loom.shafts, surplus, report);
     for (const int shaft : shafts)
       threading.ends_of_shaft[shaft].push_back(static_cast<std::size_t>(line.number) - 1);
   }
+  surplus.report_of(*section, report);
   if (threading.ends > 0 && threading.ends_of_shaft.empty())
     report.error(section->spot, "no thread is on a shaft");
   return threading;
@@ -92,16 +94,20 @@ std::optional<Threading> read_threading(const Ini& ini, const Loom& loom, TextRe
 
 std::map<int, Shafts> read_tieup(const Section& section, const Loom& loom, TextReport& report) {
   std::map<int, Shafts> tieup;
+  Surplus surplus(loom.shafts);
   for (const Numbered& line : numbered(section, loom.treadles, report))
-    tieup[line.number] = named(line, loom.shafts, report);
+    tieup[line.number] = named(line, loom.shafts, surplus, report);
+  surplus.report_of(section, report);
   return tieup;
 }
 
 Lifts read_liftplan(const Section& section, const Loom& loom, TextReport& report) {
   const std::vector<Numbered> lines = numbered(section, loom.weft, report);
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
+  Surplus surplus(loom.shafts);
   for (const Numbered& line : lines)
-    lifts[static_cast<std::size_t>(line.number) - 1] = named(line, loom.shafts, report);
+    lifts[static_cast<std::size_t>(line.number) - 1] = named(line, loom.shafts, surplus, report);
+  surplus.report_of(section, report);
   return lifts;
 }
 
@@ -113,9 +119,10 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
   std::set<int> loose;  // treadles that were told of already
   std::size_t all = 0;
+  Surplus surplus(loom.treadles);
   for (const Numbered& line : lines) {
     Shafts& moved = lifts[static_cast<std::size_t>(line.number) - 1];
-    for (const int treadle : named(line, loom.treadles, report)) {
+    for (const int treadle : named(line, loom.treadles, surplus, report)) {
       const auto tied = tieup.find(treadle);
       if (tied != tieup.end()) {
         all += tied->second.size();
@@ -137,6 +144,7 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
     }
     moved = each_once(std::move(moved));
   }
+  surplus.report_of(section, report);
   return lifts;
 }
 
