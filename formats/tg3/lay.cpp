@@ -211,14 +211,15 @@ std::optional<Domain> read_domain(const Element& element, const Fields& fields) 
         element,
         fmt::format("this domain has {} planes; up to {} are read", domain.sides.size(), most_planes),
         Kind::limit);
-  else if (const std::vector<Vec3> corners = corners_of(domain.sides);
-           corners.size() < 4 || !(bounds_of(corners).sizes().minCoeff() > 0))
-    fields.error(
-        element,
-        "the planes of this domain enclose no room: of each pair of opposite ones the normals have to "
-        "point at each other",
-        Kind::geometry);
   if (fields.errors() > errors) return std::nullopt;
+  if (const std::vector<Vec3> corners = corners_of(domain.sides);
+      corners.size() < 4 || !(bounds_of(corners).sizes().minCoeff() > 0)) {
+    fields.warning(
+        element,
+        "the planes of this domain enclose no volume: the yarns are not repeated, and there is no cell; "
+        "the normals of two opposite planes have to point at each other");
+    return std::nullopt;
+  }
   if (!cell_of(domain))
     fields.warning(
         element,
@@ -247,8 +248,21 @@ void lay(const TextileYarn& yarn, const std::optional<Domain>& domain, const Fie
          fabric::Fabric& fabric) {
   Result<YarnPath> path = YarnPath::make(yarn.nodes, yarn.interpolation);
   if (!path) return fields.error(path.error(), yarn.place);
-  YarnShape shape{
-      .path = std::move(*path), .sections = yarn.sections, .pieces = yarn.pieces, .blend = yarn.blend};
+  if (const std::size_t replaced = path->num_replaced_ups(); replaced > 0)
+    fields.warning(yarn.place,
+                   fmt::format("the direction `Up` lies along the line at {} of the {} nodes of this "
+                               "yarn: it is taken across the line there",
+                               replaced, yarn.nodes.size()));
+  YarnShape shape{.path = std::move(*path),
+                  .sections = yarn.sections,
+                  .pieces = yarn.pieces,
+                  .blend = yarn.blend,
+                  .adjustments = yarn.adjustments};
+  const std::vector<double> bends = yarn.adjustments.bends_round();
+  for (Section& section : shape.sections) {
+    section.corners.insert(section.corners.end(), bends.begin(), bends.end());
+    section.corners = corners_of(std::array<const Section*, 1>{&section});
+  }
   if (!yarn.positions.empty()) shape.pieces = pieces_of_positions(shape.path, yarn.positions);
   if (shape.pieces.empty()) shape.pieces = constant_pieces(shape.path);
   const Result<YarnUnit> unit = surface_of(shape, most_control_points);

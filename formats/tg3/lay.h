@@ -11,7 +11,7 @@
 namespace selvage::formats::tg3 {
 
 // The element <Domain>. Warns of one that is no box along the axes. Nothing: it has no sides (an error says
-// why, or a warning of a prism, which has none that are read).
+// why, or a warning of a prism, which has none that are read), or encloses no volume, with a warning.
 std::optional<Domain> read_domain(const Element& element, const Fields& fields);
 
 // The domain as a cell, where it is a box along the axes.

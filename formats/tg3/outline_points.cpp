@@ -93,6 +93,13 @@ void OutlinePoints::take_kept(const std::vector<Section>& sections) {
   make_knots();
 }
 
+std::vector<double> OutlinePoints::section_parameters() const {
+  if (ts_.empty()) return {parameters_.begin(), parameters_.end() - 1};  // of corners that are kept
+  std::vector<double> ts;
+  for (const double t : ts_) ts.push_back(brought_in(t));
+  return ts;
+}
+
 void OutlinePoints::place(const std::vector<Section>& sections, int per_turn) {
   std::vector<const Section*> all;
   for (const Section& section : sections) all.push_back(&section);

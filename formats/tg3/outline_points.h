@@ -18,6 +18,8 @@ class OutlinePoints {
  public:
   explicit OutlinePoints(const std::vector<Section>& sections);
 
+  // Of each point its parameter t of the sections, 0 <= t < 1.
+  [[nodiscard]] std::vector<double> section_parameters() const;
   // Of each section, counter-clockwise, the first not repeated.
   [[nodiscard]] const std::vector<std::vector<Vec2>>& points() const { return points_; }
   // The control points (rows) round through a row of data for each point, first = last; columns are

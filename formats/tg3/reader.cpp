@@ -30,13 +30,14 @@ const std::map<std::string_view, std::set<std::string_view>>& known_elements() {
       {"TexGenModel", {"Textile", "Domain"}},
       {"Textile", {"Domain", "Yarn", "PatternCell", "XYarnData", "YYarnData", "XYarns", "YYarns"}},
       {"Yarn", {"Interpolation", "YarnSection", "FibreDistribution", "Repeat", "MasterNode"}},
-      {"YarnSection", {"Section", "NodeSection", "PositionSection"}},
+      {"YarnSection", {"Section", "NodeSection", "PositionSection", "Adjustment", "YarnSection"}},
       {"NodeSection", {"Section", "MidNodeSection"}},
       {"MidNodeSection", {"Section"}},
       {"PositionSection", {"Section"}},
       {"Section", {"Section", "Division", "PolygonPoint", "BezierPoint"}},
       {"Interpolation", {"Interpolation", "Adjustment"}},
-      {"Adjustment", {"AdjustmentSection"}}};
+      {"Adjustment", {"AdjustmentSection"}},
+      {"AdjustmentSection", {"AdjustmentPerimeter"}}};
   return known;
 }
 

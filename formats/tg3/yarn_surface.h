@@ -12,6 +12,7 @@
 #include "core/diagnostics.h"
 #include "fabric/model.h"
 #include "formats/tg3/section.h"
+#include "formats/tg3/section_adjustment.h"
 #include "formats/tg3/yarn_path.h"
 
 namespace selvage::formats::tg3 {
@@ -39,6 +40,7 @@ struct YarnShape {
   std::vector<Section> sections;   // one at least
   std::vector<BlendPiece> pieces;  // one behind the other, from the first node to the last
   Blend blend{};
+  SectionAdjustments adjustments{};
 };
 
 // One section everywhere.
