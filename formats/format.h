@@ -235,6 +235,13 @@ inline double chord_height(const SurfaceOptions& options, const yarn::Body& body
   return options.chord > 0.0 ? options.chord : line_tolerance(options, body);
 }
 
+// The same of files of triangles alone, which are drawn and printed: 1/100 of the yarn's thickness where no
+// chord is given.
+inline double coarse_chord_height(const SurfaceOptions& options, const yarn::Body& body) {
+  constexpr double of_thickness = 0.01;
+  return options.chord > 0.0 ? options.chord : of_thickness * yarn::narrowest_section(body);
+}
+
 // Descriptor::open_bodies of a writer that is made of its arguments.
 template <class Writer>
 Result<std::unique_ptr<BodyWriter>> open_by(OutputFile& output, const SurfaceOptions& options) {

@@ -51,8 +51,14 @@ Shafts each_once(Shafts shafts) {
   return shafts;
 }
 
+// Of what threads and picks need: the draft counts it.
+Counted strict(Counted counted) {
+  counted.is_soft = false;
+  return counted;
+}
+
 // The shafts or treadles that an entry names. Zeros say "none" and are left out.
-Shafts named(const Numbered& line, const Counted& counted, Surplus& surplus, TextReport& report) {
+Shafts named(const Numbered& line, const Counted& counted, Surplus* surplus, TextReport& report) {
   std::optional<Shafts> values = whole_numbers(*line.entry, report);
   if (!values) return {};
   std::erase(*values, 0);
@@ -80,13 +86,11 @@ std::optional<Threading> read_threading(const Ini& ini, const Loom& loom, TextRe
   Threading threading;
   const std::vector<Numbered> lines = numbered(*section, loom.warp, report);
   threading.ends = reach(*section, lines, loom.warp, report);
-  Surplus surplus(loom.shafts);
   for (const Numbered& line : lines) {
-    const Shafts shafts = named(line, loom.shafts, surplus, report);
+    const Shafts shafts = named(line, strict(loom.shafts), nullptr, report);
     for (const int shaft : shafts)
       threading.ends_of_shaft[shaft].push_back(static_cast<std::size_t>(line.number) - 1);
   }
-  surplus.report_of(*section, report);
   if (threading.ends > 0 && threading.ends_of_shaft.empty())
     report.error(section->spot, "no thread is on a shaft");
   return threading;
@@ -96,7 +100,7 @@ std::map<int, Shafts> read_tieup(const Section& section, const Loom& loom, TextR
   std::map<int, Shafts> tieup;
   Surplus surplus(loom.shafts);
   for (const Numbered& line : numbered(section, loom.treadles, report))
-    tieup[line.number] = named(line, loom.shafts, surplus, report);
+    tieup[line.number] = named(line, loom.shafts, &surplus, report);
   surplus.report_of(section, report);
   return tieup;
 }
@@ -106,7 +110,7 @@ Lifts read_liftplan(const Section& section, const Loom& loom, TextReport& report
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
   Surplus surplus(loom.shafts);
   for (const Numbered& line : lines)
-    lifts[static_cast<std::size_t>(line.number) - 1] = named(line, loom.shafts, surplus, report);
+    lifts[static_cast<std::size_t>(line.number) - 1] = named(line, loom.shafts, &surplus, report);
   surplus.report_of(section, report);
   return lifts;
 }
@@ -119,10 +123,9 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
   std::set<int> loose;  // treadles that were told of already
   std::size_t all = 0;
-  Surplus surplus(loom.treadles);
   for (const Numbered& line : lines) {
     Shafts& moved = lifts[static_cast<std::size_t>(line.number) - 1];
-    for (const int treadle : named(line, loom.treadles, surplus, report)) {
+    for (const int treadle : named(line, strict(loom.treadles), nullptr, report)) {
       const auto tied = tieup.find(treadle);
       if (tied != tieup.end()) {
         all += tied->second.size();
@@ -144,7 +147,6 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
     }
     moved = each_once(std::move(moved));
   }
-  surplus.report_of(section, report);
   return lifts;
 }
 

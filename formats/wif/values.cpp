@@ -113,10 +113,10 @@ void Surplus::report_of(const Section& section, TextReport& report) const {
                                      counted_.most, counted_.noun));
 }
 
-bool is_within(int number, const Counted& counted, const Entry& entry, Surplus& surplus, TextReport& report) {
+bool is_within(int number, const Counted& counted, const Entry& entry, Surplus* surplus, TextReport& report) {
   if (number >= 1 && number <= counted.most) return true;
-  if (number > counted.most && is_taken(number, counted)) {
-    surplus.add(number, entry.value_spot);
+  if (number > counted.most && is_taken(number, counted) && surplus != nullptr) {
+    surplus->add(number, entry.value_spot);
     return true;
   }
   report.error(entry.value_spot,

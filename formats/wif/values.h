@@ -56,9 +56,10 @@ class Surplus {
   Spot first_;
 };
 
-// Is `number` within 1..most, or taken beyond that (`surplus`)? Else an error at `entry`'s value that says
+// Is `number` within 1..most, or taken beyond that (`surplus`, which may be null where the count is
+// not soft)? Else an error at `entry`'s value that says
 // so.
-bool is_within(int number, const Counted& counted, const Entry& entry, Surplus& surplus, TextReport& report);
+bool is_within(int number, const Counted& counted, const Entry& entry, Surplus* surplus, TextReport& report);
 
 // The section's entries with numbers 1..counted.most, ascending, and greater ones where the count is soft.
 // Errors: other keys, and greater numbers unless they carry nothing, which is a warning like a number that

@@ -243,6 +243,68 @@ class Tg3(Case):
                 self.assertIn("save it without what TexGen computes", said)
             path.unlink()
 
+    def test_adjusted_sections_have_the_volumes_of_the_oracle(self):
+        """Outlines that are shifted, more and more along the first span, and less and less along the second one."""
+        shift = '<AdjustmentPerimeter T="{}" Vector="{},{}"/>'
+
+        def span(*places):
+            return "".join(
+                f'<AdjustmentSection T="{t}">'
+                + "".join(
+                    shift.format(u, x * by, y * by)
+                    for u, x, y in ((0, 0.2, 0), (0.3, 0, 0.3), (0.7, -0.1, 0), (1, 0.2, 0))
+                )
+                + "</AdjustmentSection>"
+                for t, by in places
+            )
+
+        first, second = span((0, 0), (0.5, 0.2), (1, 1)), span((0.3, 1), (0.9, 0))
+        for section in (ELLIPSE, LENS, BOX):
+            adjusted = (
+                f'<Adjustment index="0">{first}</Adjustment><Adjustment index="1">{second}</Adjustment>'
+                f'<YarnSection type="CYarnSectionConstant">{section}</YarnSection>'
+            )
+            text = model(adjusted, attributes='type="CYarnSectionAdjusted"')
+            with self.subTest(section):
+                plain = self.yarns(model(section))[0]["volume"]
+                expected = Model(self.file(text)).yarns[0].volume()
+                self.assertGreater(abs(expected / plain - 1), 0.01)
+                self.assertAlmostEqual(self.yarns(text)[0]["volume"] / expected, 1, delta=5e-4)
+
+    def test_equal_points_of_a_polygon_are_left_out(self):
+        corners = ["1,-0.5", "1,0.5", "1,0.5", "1,0.5", "-1,0.5", "-1,-0.5"]
+        rows = "".join(f'<PolygonPoint value="{corner}"/>' for corner in corners)
+        text = model(f'<Section type="CSectionPolygon">{rows}</Section>', height=0)
+        self.assertAlmostEqual(self.yarns(text)[0]["volume"], 20, delta=1e-9)
+        self.assertIn(
+            "warning: 2 of the 6 points of this polygon equal the point before them",
+            self.succeeds("info", self.file(text)).stderr,
+        )
+
+    def test_up_along_the_line_is_taken_across_it(self):
+        """A vertical yarn, with and without `Up`, and one that turns from x to z: its sections do not turn about it."""
+        upright = model(ELLIPSE, "Linear").replace("5,0,2", "0,0,5").replace("10,0,0", "0,0,10", 1)
+        upright = upright.replace('Position="10,0,0"', 'Position="0,0,10"').replace('value="0,0,10"', 'value="10,0,0"')
+        for text in (upright, upright.replace('0,0,1"', '0,0,0"')):
+            yarn = self.yarns(text)[0]
+            self.assertAlmostEqual(yarn["volume"], 10 * math.pi / 2, delta=1e-5)
+            self.assertIn("lies along the line at 3 of the 3 nodes", self.succeeds("info", self.file(text)).stderr)
+        bent = (
+            model(ELLIPSE, "Bezier")
+            .replace('Periodic="1"', 'Periodic="0"')
+            .replace('Position="10,0,0"', 'Position="5,0,12" Tangent="0,0,1"')
+        )
+        good = bent.replace('Tangent="0,0,1" Up="0,0,1"', 'Tangent="0,0,1" Up="-1,0,0"')
+        self.assertIn("at 1 of the 3 nodes", self.succeeds("info", self.file(bent)).stderr)
+        self.assertAlmostEqual(self.yarns(bent)[0]["volume"] / self.yarns(good)[0]["volume"], 1, delta=1e-2)
+
+    def test_a_domain_without_volume_is_left_out(self):
+        text = model(ELLIPSE, domain=DOMAIN.replace('"-1,0,0" d="-20"', '"-1,0,0" d="20"'))
+        self.assertEqual(len(self.yarns(text)), 1)
+        self.assertIn(
+            "warning: the planes of this domain enclose no volume", self.succeeds("info", self.file(text)).stderr
+        )
+
     def test_bad_input(self):
         whole = model(ELLIPSE)
         laughs = (
