@@ -21,7 +21,8 @@ std::optional<fabric::Cell> cell_of(const Domain& domain);
 // into the domain. A yarn that goes on where it ends (its last node is its first one, a sum of repeats away,
 // and so is the section there) becomes one yarn for each of its lines. Errors: as YarnPath::make and
 // surface_of; repeats that are dependent (geometry), more copies than can be held (limit).
-void lay(const TextileYarn& yarn, const std::optional<Domain>& domain, const Fields& fields,
-         fabric::Fabric& fabric);
+// `tolerance`: of YarnShape. Gives back how far the surface is from the sections, about.
+double lay(const TextileYarn& yarn, const std::optional<Domain>& domain, double tolerance,
+           const Fields& fields, fabric::Fabric& fabric);
 
 }  // namespace selvage::formats::tg3

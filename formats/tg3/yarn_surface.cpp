@@ -49,7 +49,9 @@ struct Interval {
 class Surface {
  public:
   explicit Surface(const YarnShape& shape)
-      : shape_(shape), outline_(shape.sections), ts_(outline_.section_parameters()) {
+      : shape_(shape),
+        outline_(shape.sections, shape.adjustments.is_empty() ? shape.tolerance / 2 : 0.0),
+        ts_(outline_.section_parameters()) {
     for (const BlendPiece& piece : shape.pieces) add_cut(piece);
     parts_.assign(pieces_.size(), 1);
     thinnest_ = infinity;
@@ -165,6 +167,7 @@ class Surface {
   // Doubles the parts of the pieces that are too far off; false: none is.
   bool refine() {
     bool any = false;
+    deviation_ = 0;
     std::size_t j = 0;
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
       double worst = 0;
@@ -176,7 +179,9 @@ class Surface {
           worst = std::max(worst, (miss - miss.dot(along) / along.squaredNorm() * along).norm());
         }
       }
-      if (worst <= along_share * thinnest_ || parts_[k] >= most_parts) continue;
+      deviation_ = std::max(deviation_, worst);
+      if (worst <= std::max(along_share * thinnest_, shape_.tolerance / 2) || parts_[k] >= most_parts)
+        continue;
       parts_[k] *= 2;
       any = true;
     }
@@ -213,6 +218,7 @@ class Surface {
     for (std::size_t j = 0; j < rows.size(); ++j)
       for (Eigen::Index i = 0; i < control.rows(); ++i)
         grid.points.emplace_back(control.row(i).segment<3>(3 * static_cast<Eigen::Index>(j)).transpose());
+    unit.deviation = outline_.deviation() + deviation_;
     unit.goes_on = goes_on();
     return unit;
   }
@@ -224,7 +230,7 @@ class Surface {
   std::vector<int> parts_;
   std::vector<Interval> intervals_;
   std::vector<bool> bends_;  // behind interval j - 1
-  double thinnest_ = 0, widest_ = 0;
+  double thinnest_ = 0, widest_ = 0, deviation_ = 0;
 };
 
 }  // namespace

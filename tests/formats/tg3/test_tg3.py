@@ -3,6 +3,7 @@
 import json
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -304,6 +305,28 @@ class Tg3(Case):
         self.assertIn(
             "warning: the planes of this domain enclose no volume", self.succeeds("info", self.file(text)).stderr
         )
+
+    def test_measured_sections_are_fitted(self):
+        """Polygons whose corners stand at different places: a tenth of the points, and the oracle's volume."""
+        sections = ""
+        for k in range(24):
+            turns = [2 * math.pi * (i + 0.3 * math.sin(7 * i + 3 * k)) / 40 for i in range(40)]
+            rows = "".join(
+                f'<PolygonPoint value="{1.2 * math.cos(a):.6f},{0.4 * math.sin(a):.6f}"/>' for a in sorted(turns)
+            )
+            sections += (
+                f'<PositionSection t="{k / 24}"><Section type="CSectionPolygon">{rows}</Section></PositionSection>'
+            )
+        text = model(sections, attributes='type="CYarnSectionInterpPosition" Ramped="0" Polar="0"')
+        path = self.file(text)
+        done = self.succeeds("info", "--json", path, "-v")
+        found = re.search(
+            r"fitted to within (\S+) mm of their sections, with (\d+) control points instead of (\d+)", done.stderr
+        )
+        self.assertLess(float(found[1]), 1e-3 * 0.8)
+        self.assertLess(int(found[2]), int(found[3]) / 3)
+        volume = json.loads(done.stdout)["inputs"][0]["yarns"][0]["volume"]
+        self.assertAlmostEqual(volume / Model(path).yarns[0].volume(), 1, delta=1e-3)
 
     def test_bad_input(self):
         whole = model(ELLIPSE)
