@@ -230,14 +230,9 @@ inline double line_tolerance(const SurfaceOptions& options, const yarn::Body& bo
   return options.tolerance > 0.0 ? options.tolerance : 1e-3 * yarn::narrowest_section(body);
 }
 
-// How far triangles may be from the surface that they stand for.
+// How far triangles, which are drawn and printed, may be from the surface that they stand for: 1/100 of the
+// yarn's thinnest section where no chord is given.
 inline double chord_height(const SurfaceOptions& options, const yarn::Body& body) {
-  return options.chord > 0.0 ? options.chord : line_tolerance(options, body);
-}
-
-// The same of files of triangles alone, which are drawn and printed: 1/100 of the yarn's thickness where no
-// chord is given.
-inline double coarse_chord_height(const SurfaceOptions& options, const yarn::Body& body) {
   constexpr double of_thickness = 0.01;
   return options.chord > 0.0 ? options.chord : of_thickness * yarn::narrowest_section(body);
 }

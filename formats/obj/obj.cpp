@@ -34,7 +34,7 @@ class Writer final : public BodyWriter {
   }
 
   Status add(const yarn::Body& body) override {
-    const Result<solid::Tessellation> skin = solid::tessellate(body, coarse_chord_height(options_, body));
+    const Result<solid::Tessellation> skin = solid::tessellate(body, chord_height(options_, body));
     if (!skin) return skin.error();
     const std::string name = word_of(body.name);
     text_ << "o " << name << "\ng " << name << '\n';

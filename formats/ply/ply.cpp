@@ -30,7 +30,7 @@ class Writer final : public BodyWriter {
   }
 
   Status add(const yarn::Body& body) override {
-    const Result<solid::Tessellation> skin = solid::tessellate(body, coarse_chord_height(options_, body));
+    const Result<solid::Tessellation> skin = solid::tessellate(body, chord_height(options_, body));
     if (!skin) return skin.error();
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (vertices_ + skin->vertices.size() > most)

@@ -34,7 +34,7 @@ class Writer final : public BodyWriter {
   }
 
   Status add(const yarn::Body& body) override {
-    const double chord = coarse_chord_height(options_, body);
+    const double chord = chord_height(options_, body);
     Result<solid::Tessellation> made = solid::tessellate(body, chord);
     if (!made) return made.error();
     const Result<solid::SingleSkin> skin = solid::in_single_precision(body, std::move(*made));
