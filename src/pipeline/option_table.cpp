@@ -204,8 +204,7 @@ void of_yarns(OptionTable& t) {
       "m cm mm um inch", &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
   t.option({convert, relax}, "--chord",
            "how far triangles may be from the surfaces that they stand for, in the input's unit (default: "
-           "1/100 of a "
-           "yarn's thinnest section, of gltf the tolerance)",
+           "1/100 of the yarn's thinnest section)",
            Argument::positive(), &Options::chord)
       .goes_with("is of triangles", "", "--cut --matrix --lines");
   t.choice({convert, check, relax, mesh, roundtrip, info}, "--ends",
