@@ -166,7 +166,7 @@ class Reader {
   // Surfaces that would be far larger than the file are laid within the usual tolerance of tubes.
   void fit(const Element& element, const Textile& textile) {
     constexpr std::size_t bytes_a_point = 200, most_times = 10,
-                          always = std::size_t{1} << 20U;  // as IGES, about
+                          always = std::size_t{8} << 20U;  // as IGES, about
     const std::size_t exact = num_control_points(fabric_);
     if (fields_.errors() > 0 ||
         bytes_a_point * exact <= std::max(most_times * source_.bytes().size(), always))

@@ -543,7 +543,7 @@ class Meshes(Case):
             ("shell.inp", shell, None),
             ("binary.msh", old.replace("2.2 0 8", "4.1 1 8"), "this mesh is binary: save it as text"),
             ("version.msh", old.replace("2.2 0 8", "4 0 8"), "the version 4 of Gmsh's format is not read"),
-            ("node.msh", old.replace("2 3 4\n$End", "2 3 9\n$End"), ":13:1: error: element 2 has the node 9"),
+            ("node.msh", old.replace("2 3 4\n$End", "2 3 9\n$End"), ":14:1: error: element 2 has the node 9"),
             ("node.inp", shell.replace("1, 2, 3, 4\n", "1, 2, 3, 9\n"), ":7:1: error: element 1 has the node 9"),
             ("beams.inp", shell.replace("S4R", "B31"), "no element that is a surface or a solid"),
             ("split.inp", "*HEADING\n*INCLUDE, INPUT=a_mesh.inp\n", "this deck takes in 'a_mesh.inp': view that file"),

@@ -310,7 +310,7 @@ class BadSamples(Case):
     def test_each_is_refused_at_its_place(self):
         expected = {
             "wif_no_tieup.wif": "25:1: error: [TREADLING] needs [TIEUP], which is missing",
-            "wif_shaft_beyond.wif": "27:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
+            "wif_shaft_beyond.wif": "21:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
             "wif_treadle_beyond.wif": "33:3: error: treadle 9 is beyond the 4 treadles of [WEAVING]",
         }
         self.assertEqual(sorted(path.name for path in BAD.glob("*.wif")), sorted(expected))
