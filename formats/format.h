@@ -230,9 +230,11 @@ inline double line_tolerance(const SurfaceOptions& options, const yarn::Body& bo
   return options.tolerance > 0.0 ? options.tolerance : 1e-3 * yarn::narrowest_section(body);
 }
 
-// How far triangles may be from the surface that they stand for.
+// How far triangles, which are drawn and printed, may be from the surface that they stand for: 1/100 of the
+// yarn's thinnest section where no chord is given.
 inline double chord_height(const SurfaceOptions& options, const yarn::Body& body) {
-  return options.chord > 0.0 ? options.chord : line_tolerance(options, body);
+  constexpr double of_thickness = 0.01;
+  return options.chord > 0.0 ? options.chord : of_thickness * yarn::narrowest_section(body);
 }
 
 // Descriptor::open_bodies of a writer that is made of its arguments.

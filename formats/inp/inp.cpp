@@ -8,6 +8,7 @@
 #include "core/readable.h"
 #include "fem/materials.h"
 #include "formats/inp/deck.h"
+#include "formats/inp/mesh_reader.h"
 #include "formats/inp/options.h"
 #include "formats/inp/reader.h"
 
@@ -245,6 +246,7 @@ const Descriptor& descriptor() {
       .title = "Abaqus and CalculiX input deck",
       .extensions = {".inp"},
       .sniff = looks_like_a_deck,
+      .read_mesh = read_mesh,
       .read_deck = read_deck,
       .write_mesh = write,
       .write_beams = write_beams,

@@ -13,42 +13,13 @@
 #include "core/text_lines.h"
 #include "core/text_report.h"
 #include "core/words.h"
+#include "formats/inp/cards.h"
 
 namespace selvage::formats::inp {
 
 namespace {
 
 using fem::SolvedDeck;
-
-// Names and keywords count in any case.
-std::string key_of(std::string_view text) {
-  std::string key(trimmed(text));
-  for (char& letter : key)
-    if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
-  return key;
-}
-
-// "*SOLID SECTION, ELSET=a, MATERIAL=b": the word, and what its parameters are.
-struct Card {
-  std::string word;
-  std::map<std::string, std::string> values;
-  [[nodiscard]] std::string value(const std::string& name) const {
-    const auto found = values.find(name);
-    return found == values.end() ? std::string() : found->second;
-  }
-};
-Card card_of(std::string_view line) {
-  Card card;
-  const std::vector<std::string_view> parts = split(line.substr(1), ',');
-  if (parts.empty()) return card;
-  card.word = key_of(parts.front());
-  for (std::size_t k = 1; k < parts.size(); ++k) {
-    const std::size_t is = parts[k].find('=');
-    card.values[key_of(parts[k].substr(0, is))] =
-        is == std::string_view::npos ? std::string() : std::string(trimmed(parts[k].substr(is + 1)));
-  }
-  return card;
-}
 
 std::size_t nodes_of(std::string type) {
   if (type.starts_with('D')) type.erase(0, 1);

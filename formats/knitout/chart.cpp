@@ -46,6 +46,7 @@ class Charter {
   void order_row(const Pass& pass);
   [[nodiscard]] std::optional<bool> is_before(int a, int b) const;
   void drop_open_loops();
+  void add_empty_course();
 
   const StitchGraph& graph_;
   TextReport& report_;
@@ -85,8 +86,6 @@ bool Charter::find_size() {
 void Charter::check_loops() {
   for (std::size_t i = 0; i < graph_.loops.size() && !report_.is_full(); ++i) {
     const Loop& one = graph_.loops[i];
-    if (graph_.carrier_sets[one.carriers].size() > 1)
-      refuse(one, "several yarns in one loop are not supported: knit with one carrier");
     if (one.splits)
       refuse(one,
              "a split is not supported: the loops that it moves would hold two loops; knit, or transfer");
@@ -135,7 +134,7 @@ void Charter::fill() {
   Knit& knit = made_.knit;
   knit.chart.assign(static_cast<std::size_t>(rows), std::string(static_cast<std::size_t>(wales_), '.'));
   knit.chart_lines.assign(static_cast<std::size_t>(rows), graph_.loops.front().spot.line);
-  made_.carriers.assign(static_cast<std::size_t>(rows), -1);
+  made_.carrier_sets.assign(static_cast<std::size_t>(rows), -1);
   for (const Pass& pass : passes_.list) {
     const auto from_top = static_cast<std::size_t>(rows - 1 - pass.row);
     std::string& signs = knit.chart[from_top];
@@ -145,7 +144,7 @@ void Charter::fill() {
     for (const int number : pass.loops)
       signs[static_cast<std::size_t>(made_at(loop(number)))] = sign_of(loop(number));
     knit.chart_lines[from_top] = loop(pass.loops.front()).spot.line;
-    made_.carriers[static_cast<std::size_t>(pass.row)] = graph_.carrier_sets[pass.carriers].front();
+    made_.carrier_sets[static_cast<std::size_t>(pass.row)] = static_cast<int>(pass.carriers);
   }
   knit.form = Knit::Form::chart;
   knit.courses = passes_.courses;
@@ -278,6 +277,17 @@ void Charter::check_stacks(const fabric::StitchChart& chart) {
   }
 }
 
+// A chart without '.' is taken for one that repeats, in which loops of the last course would be held on by
+// the first one.
+void Charter::add_empty_course() {
+  const auto feeds = static_cast<std::size_t>(passes_.feeds);
+  Knit& knit = made_.knit;
+  knit.chart.insert(knit.chart.begin(), feeds, std::string(static_cast<std::size_t>(wales_), '.'));
+  knit.chart_lines.insert(knit.chart_lines.begin(), feeds, knit.chart_lines.front());
+  made_.carrier_sets.insert(made_.carrier_sets.end(), feeds, -1);
+  knit.courses += 1;
+}
+
 std::optional<GraphChart> Charter::run() {
   if (graph_.loops.empty()) return std::nullopt;
   find_gating();
@@ -289,7 +299,11 @@ std::optional<GraphChart> Charter::run() {
   order_moves();
   drop_open_loops();
   if (report_.errors() > 0) return std::nullopt;
-  const Result<fabric::StitchChart> chart = fabric::StitchChart::of(made_.knit);
+  Result<fabric::StitchChart> chart = fabric::StitchChart::of(made_.knit);
+  if (!chart && !fabric::Journeys::are_needed(made_.knit)) {
+    add_empty_course();
+    chart = fabric::StitchChart::of(made_.knit);
+  }
   if (!chart) {
     Spot spot = graph_.loops.front().spot;
     for (const Pass& pass : passes_.list)

@@ -16,13 +16,14 @@ namespace selvage::formats::knitout {
 inline constexpr long long most_cells = 20'000'000, free_cells = 2'000'000, cells_a_loop = 100;
 
 struct GraphChart {
-  fabric::Knit knit;          // chart, moves, gating, feeds, courses, wales: what follows from the graph
-  std::vector<int> carriers;  // of each row, from the first one; those of rows without a yarn are anyone's
-  bool is_doubled = false;    // two wales a needle
+  fabric::Knit knit;  // chart, moves, gating, feeds, courses, wales: what follows from the graph
+  // Of each row, from the first one: index in StitchGraph::carrier_sets; -1: of a row without a yarn.
+  std::vector<int> carrier_sets;
+  bool is_doubled = false;  // two wales a needle
 };
 
-// Errors, each at its operation: what a chart does not hold (two yarns in a loop, splits, transfers to the
-// other bed of an opposite gating, loops of several courses that pass each other), and too many stitches.
+// Errors, each at its operation: what a chart does not hold (splits, transfers to the other bed of an
+// opposite gating, loops of several courses that pass each other), and too many stitches.
 std::optional<GraphChart> chart_of(const StitchGraph& graph, TextReport& report);
 
 }  // namespace selvage::formats::knitout

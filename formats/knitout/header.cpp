@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/number_text.h"
+#include "core/text_lines.h"
 #include "core/words.h"
 #include "formats/knitout/operation.h"
 
@@ -27,29 +28,70 @@ void read_gauge(const Carrier& value, Header& header, TextReport& report) {
   header.gauge_spot = value.spot;
 }
 
-}  // namespace
+// False: there are too many.
+bool add_carrier(const Carrier& carrier, Header& header, TextReport& report) {
+  if (header.carriers.size() == most_carriers) {
+    report.error(carrier.spot, fmt::format("a machine has at most {} carriers", most_carriers), Kind::limit);
+    return false;
+  }
+  if (std::find(header.carriers.begin(), header.carriers.end(), carrier.name) != header.carriers.end())
+    report.error(carrier.spot, fmt::format("carrier {} is named twice", in_quotes(carrier.name)));
+  else
+    header.carriers.push_back(carrier.name);
+  return true;
+}
 
-bool is_knitout(std::string_view head) {
+bool has_magic(std::string_view head) {
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
   return head.starts_with(magic);
 }
 
-bool read_first_line(std::string_view line, TextReport& report) {
+// The first operation that is a machine's only, with all its operands.
+bool begins_with_an_operation(std::string_view head) {
+  const Source source = Source::from_memory(std::string(head), "");
+  TextReport report(source);
+  Operation operation;
+  TextLines lines(head);
+  while (lines.next()) {
+    const std::string_view line = lines.line().substr(0, lines.line().find(';'));
+    if (!read_operation(line, lines.spot(), operation, report)) {
+      if (report.errors() > 0) return false;
+      continue;
+    }
+    if (is_of_loops(operation.verb)) return true;
+    if (operation.verb != Verb::extension) return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_knitout(std::string_view head) {
+  return has_magic(head) || begins_with_an_operation(head);
+}
+
+FirstLine read_first_line(std::string_view line, std::string_view head, TextReport& report) {
   const Spot spot;
-  if (!is_knitout(line)) {
+  if (!has_magic(line)) {
+    if (begins_with_an_operation(head)) {
+      report.warning(spot,
+                     "the first line of a knitout program is missing: write ';!knitout-2'; the program is "
+                     "read as version 2");
+      return FirstLine::missing;
+    }
     report.error(spot, "this is no knitout program: its first line is not ';!knitout-2'");
-    return false;
+    return FirstLine::wrong;
   }
   std::string_view version = line.substr(line.find('-') + 1);
   while (!version.empty() && (version.back() == ' ' || version.back() == '\r')) version.remove_suffix(1);
   const std::optional<double> number = read_number(version);
   if (!number) {
     report.error(spot, fmt::format("{} is no version of knitout: write ';!knitout-2'", in_quotes(version)));
-    return false;
+    return FirstLine::wrong;
   }
   if (*number > newest_version)
     report.warning(spot, fmt::format("knitout of version {}; it is read as version 2", version));
-  return true;
+  return FirstLine::magic;
 }
 
 void read_header_line(std::string_view line, const Spot& begin, Header& header, TextReport& report) {
@@ -66,16 +108,13 @@ void read_header_line(std::string_view line, const Spot& begin, Header& header, 
         all.substr(static_cast<std::size_t>(word->name.data() - all.data())), word->spot};
   if (!same_word(name, "Carriers")) return;
   header.has_carriers = true;
-  for (; word; word = next_word(rest, line, begin)) {
-    if (header.carriers.size() == most_carriers) {
-      report.error(word->spot, fmt::format("a machine has at most {} carriers", most_carriers), Kind::limit);
-      return;
+  for (; word; word = next_word(rest, line, begin))
+    for (std::size_t at = 0; at <= word->name.size();) {  // the carriers of a rail
+      const std::size_t end = std::min(word->name.find_first_of(",;", at), word->name.size());
+      const Carrier carrier{word->name.substr(at, end - at), word->spot.behind(at)};
+      if (!carrier.name.empty() && !add_carrier(carrier, header, report)) return;
+      at = end + 1;
     }
-    if (std::find(header.carriers.begin(), header.carriers.end(), word->name) != header.carriers.end())
-      report.error(word->spot, fmt::format("carrier {} is named twice", in_quotes(word->name)));
-    else
-      header.carriers.push_back(word->name);
-  }
 }
 
 }  // namespace selvage::formats::knitout

@@ -134,6 +134,7 @@ void Machine::take_out(const Operation& operation) {
     else if (!state.is_used)
       report_.warning(state.spot,
                       fmt::format("carrier {} is brought in, and knits nothing", in_quotes(named.name)));
+    warn_of_hook(state, graph_.carriers[static_cast<std::size_t>(set_[i])]);
     state = {};
   }
 }
@@ -229,12 +230,8 @@ void Machine::make_loop(const Operation& operation, bool is_tuck) {
   if (is_tuck && !can_hold(stack(operation.needle).size() + 1, operation.needle, operation.needle_spot))
     return;
   note_passings(operation.spot);
-  for (const auto& [spot, needle] : ladders_)
-    report_.warning(spot,
-                    fmt::format("the loop dropped from {} runs: it holds the loops below it, which stay as "
-                                "they were knitted here",
-                                name_of(needle)));
-  ladders_.clear();
+  warn_of_ladders();
+  note_floats(operation);
   Stack& held = stack(operation.needle);
   const int number = static_cast<int>(graph_.loops.size());
   Loop loop;
@@ -264,16 +261,70 @@ void Machine::make_loop(const Operation& operation, bool is_tuck) {
   graph_.loops.push_back(loop);
 }
 
+// "f3", or "f3 and 5 other needles".
+static std::string needles_text(const std::vector<std::pair<Spot, Needle>>& places) {
+  std::string text = name_of(places.front().second);
+  if (places.size() == 2) text += " and another needle";
+  if (places.size() > 2) text += fmt::format(" and {} other needles", places.size() - 1);
+  return text;
+}
+
+void Machine::warn_of_ladders() {
+  if (ladders_.empty()) return;
+  report_.warning(ladders_.front().first,
+                  fmt::format("the loop dropped from {} runs: it holds the loops below it, which stay as "
+                              "they were knitted here",
+                              needles_text(ladders_)));
+  ladders_.clear();
+}
+
+// The yarn's way from the last loop of each carrier.
+void Machine::note_floats(const Operation& operation) {
+  const int column = station(operation.needle).column;
+  for (const int number : set_) {
+    State& state = states_[static_cast<std::size_t>(number)];
+    if (state.last_loop != no_loop) {
+      const int last = graph_.loops[static_cast<std::size_t>(state.last_loop)].made.column;
+      if (const int passed = std::abs(column - last) - 1; passed > most_float)
+        floats_.push_back({operation.spot, number, passed, operation.needle});
+    }
+    state.last_loop = static_cast<int>(graph_.loops.size());
+  }
+}
+
+void Machine::warn_of_floats() {
+  if (floats_.empty()) return;
+  const Float& first = floats_.front();
+  std::string others;
+  if (floats_.size() > 1)
+    others = fmt::format("; {} floats of the program are longer than {} needles", floats_.size(), most_float);
+  report_.warning(
+      first.spot,
+      fmt::format("carrier {} floats past {} needles on its way to {}: a tuck on the way, or a yarn of "
+                  "its own, holds it{}",
+                  in_quotes(graph_.carriers[static_cast<std::size_t>(first.carrier)]), first.needles,
+                  name_of(first.to), others));
+}
+
+void Machine::warn_of_hook(const State& state, const std::string& name) {
+  if (!state.is_hooked || !state.is_used) return;
+  report_.warning(state.spot, fmt::format("carrier {} is never released from the inserting hook: write "
+                                          "'releasehook {}' behind its first loops",
+                                          in_quotes(name), name));
+}
+
 void Machine::drop(const Operation& operation) {
   if (!is_on_bed(operation.needle, operation.needle_spot)) return;
   Stack& held = stack(operation.needle);
-  bool ladders = false;
+  bool ladders = false, is_undone = false;
   for (const int number : held) {
     Loop& loop = graph_.loops[static_cast<std::size_t>(number)];
     loop.end = Loop::End::dropped;
     loop.left = station(operation.needle);
     ladders = ladders || (!loop.is_tuck && loop.through_count > 0);
+    is_undone = is_undone || (!loop.is_tuck && loop.through_count == 0);
   }
+  if (is_undone) undone_.emplace_back(operation.spot, operation.needle);
   if (ladders) ladders_.emplace_back(operation.spot, operation.needle);
   held.clear();
   hold(operation.needle);
@@ -361,12 +412,21 @@ void Machine::run(const Operation& operation) {
 StitchGraph Machine::finish() {
   graph_.carrier_sets.resize(set_numbers_.size());
   for (const auto& [set, number] : set_numbers_) graph_.carrier_sets[number] = set;
-  for (std::size_t i = 0; i < states_.size(); ++i)
+  warn_of_floats();
+  if (!undone_.empty())
+    report_.warning(
+        undone_.front().first,
+        fmt::format("the loop dropped from {} is drawn through no other one and comes undone: it stays "
+                    "as it was knitted here",
+                    needles_text(undone_)));
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    warn_of_hook(states_[i], graph_.carriers[i]);
     if (states_[i].is_in)
       report_.warning(states_[i].spot,
                       fmt::format("carrier {} is never taken out: its yarn ends at its last stitch; write "
                                   "'outhook {}' behind it",
                                   in_quotes(graph_.carriers[i]), graph_.carriers[i]));
+  }
   return std::move(graph_);
 }
 

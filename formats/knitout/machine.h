@@ -14,6 +14,9 @@
 
 namespace selvage::formats::knitout {
 
+// Needles that a yarn passes without a loop, from one loop to its next one, before a warning.
+inline constexpr int most_float = 8;
+
 // Needles by which the beds can stand off from each other, either way.
 inline constexpr int most_racking = 24;
 
@@ -26,13 +29,16 @@ class Machine {
   // ladder.
   void run(const Operation& operation);
   // What hangs on the needles stays there, as open loops. What was dropped after the last loop was taken off
-  // the machine, and does not ladder. Warnings of carriers that are still in.
+  // the machine, and does not ladder. Warnings of carriers that are still in or in the hook, of long floats
+  // and of loops that come undone.
   StitchGraph finish();
+  [[nodiscard]] std::size_t num_loops() const { return graph_.loops.size(); }
 
  private:
   struct State {
     bool is_in = false, is_hooked = false, is_used = false;
-    Spot spot;  // of the `in`
+    Spot spot;                // of the `in`
+    int last_loop = no_loop;  // that was made of its yarn, since it is in
   };
   using Stack = std::vector<int>;  // loops, from the needle's own bed on
 
@@ -53,6 +59,10 @@ class Machine {
   void rack(const Operation& operation);
   void make_loop(const Operation& operation, bool is_tuck);
   void drop(const Operation& operation);
+  void note_floats(const Operation& operation);
+  void warn_of_hook(const State& state, const std::string& name);
+  void warn_of_ladders();
+  void warn_of_floats();
   void transfer(const Operation& operation, bool splits);
   void note_passings(const Spot& spot);
   bool passes_too_much(const Spot& spot);
@@ -74,6 +84,13 @@ class Machine {
   double least_swept_ = 0, most_swept_ = 0;       // rackings since loops were looked at
   std::size_t passed_ = 0;                        // needles and loops visited
   std::vector<std::pair<Spot, Needle>> ladders_;  // dropped since the last loop was made
+  std::vector<std::pair<Spot, Needle>> undone_;   // dropped loops that are drawn through nothing
+  struct Float {
+    Spot spot;
+    int carrier = 0, needles = 0;
+    Needle to;
+  };
+  std::vector<Float> floats_;  // longer than most_float
   int least_used_ = most_number + 1, most_used_ = -most_number - 1;
 };
 

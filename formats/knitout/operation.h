@@ -36,6 +36,31 @@ enum class Verb {
   extension
 };
 
+// Does it bring yarn or take it away, make loops or move them?
+inline bool is_of_loops(Verb verb) {
+  switch (verb) {
+    case Verb::in:
+    case Verb::inhook:
+    case Verb::releasehook:
+    case Verb::out:
+    case Verb::outhook:
+    case Verb::knit:
+    case Verb::tuck:
+    case Verb::split:
+    case Verb::miss:
+    case Verb::drop:
+    case Verb::amiss:
+    case Verb::xfer:
+      return true;
+    case Verb::rack:
+    case Verb::stitch:
+    case Verb::pause:
+    case Verb::extension:
+      return false;
+  }
+  return false;
+}
+
 struct Carrier {
   std::string_view name;
   Spot spot;
@@ -51,6 +76,12 @@ struct Operation {
   double racking = 0;
   std::vector<Carrier> carriers;
 };
+
+// Is there a yarn in it, of which a loop is made?
+inline bool makes_loop(const Operation& operation) {
+  return !operation.carriers.empty() &&
+         (operation.verb == Verb::knit || operation.verb == Verb::tuck || operation.verb == Verb::split);
+}
 
 // The operation of a line without its comment; nothing where there is none, or an error, which is reported.
 // `operation` is filled anew; its room is kept.

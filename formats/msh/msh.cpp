@@ -9,6 +9,7 @@
 #include "fem/faces.h"
 #include "formats/msh/cell.h"
 #include "formats/msh/element_data.h"
+#include "formats/msh/reader.h"
 
 namespace selvage::formats::msh {
 
@@ -216,6 +217,7 @@ const Descriptor& descriptor() {
                                   .title = "Gmsh mesh 4.1",
                                   .extensions = {".msh"},
                                   .sniff = has_the_first_line,
+                                  .read_mesh = read_mesh,
                                   .write_mesh = write,
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 1,

@@ -14,7 +14,7 @@ namespace {
 using fabric::Role;
 using Yarns = std::vector<TextileYarn>;
 
-constexpr int most_yarns = 1000;          // of a system
+constexpr int most_of_system = 1000;      // yarns
 constexpr std::size_t most_levels = 200;  // yarns one above the other at a crossing
 
 PathNode node_at(const Vec3& position, const Vec3& tangent, TextPlace place) {
@@ -37,8 +37,8 @@ class WeaveBuilder {
 
   std::optional<Yarns> build(bool is_sheared) {
     const int errors = fields_.errors();
-    x_count_ = static_cast<std::size_t>(fields_.whole(textile_, "NumXYarns", 1, most_yarns));
-    y_count_ = static_cast<std::size_t>(fields_.whole(textile_, "NumYYarns", 1, most_yarns));
+    x_count_ = static_cast<std::size_t>(fields_.whole(textile_, "NumXYarns", 1, most_of_system));
+    y_count_ = static_cast<std::size_t>(fields_.whole(textile_, "NumYYarns", 1, most_of_system));
     thickness_ = fields_.positive(textile_, "FabricThickness");
     shear_ = is_sheared ? fields_.number(textile_, "ShearAngle") : 0.0;
     if (std::abs(std::cos(shear_)) < 1e-3)

@@ -211,14 +211,15 @@ std::optional<Domain> read_domain(const Element& element, const Fields& fields) 
         element,
         fmt::format("this domain has {} planes; up to {} are read", domain.sides.size(), most_planes),
         Kind::limit);
-  else if (const std::vector<Vec3> corners = corners_of(domain.sides);
-           corners.size() < 4 || !(bounds_of(corners).sizes().minCoeff() > 0))
-    fields.error(
-        element,
-        "the planes of this domain enclose no room: of each pair of opposite ones the normals have to "
-        "point at each other",
-        Kind::geometry);
   if (fields.errors() > errors) return std::nullopt;
+  if (const std::vector<Vec3> corners = corners_of(domain.sides);
+      corners.size() < 4 || !(bounds_of(corners).sizes().minCoeff() > 0)) {
+    fields.warning(
+        element,
+        "the planes of this domain enclose no volume: the yarns are not repeated, and there is no cell; "
+        "the normals of two opposite planes have to point at each other");
+    return std::nullopt;
+  }
   if (!cell_of(domain))
     fields.warning(
         element,
@@ -243,31 +244,48 @@ std::optional<fabric::Cell> cell_of(const Domain& domain) {
   return cell;
 }
 
-void lay(const TextileYarn& yarn, const std::optional<Domain>& domain, const Fields& fields,
-         fabric::Fabric& fabric) {
+double lay(const TextileYarn& yarn, const std::optional<Domain>& domain, double tolerance,
+           const Fields& fields, fabric::Fabric& fabric) {
+  const auto refuse = [&](const Message& message) {
+    fields.error(message, yarn.place);
+    return 0.0;
+  };
   Result<YarnPath> path = YarnPath::make(yarn.nodes, yarn.interpolation);
-  if (!path) return fields.error(path.error(), yarn.place);
-  YarnShape shape{
-      .path = std::move(*path), .sections = yarn.sections, .pieces = yarn.pieces, .blend = yarn.blend};
+  if (!path) return refuse(path.error());
+  if (const std::size_t replaced = path->num_replaced_ups(); replaced > 0)
+    fields.warning(yarn.place,
+                   fmt::format("the direction `Up` lies along the line at {} of the {} nodes of this "
+                               "yarn: it is taken across the line there",
+                               replaced, yarn.nodes.size()));
+  YarnShape shape{.path = std::move(*path),
+                  .sections = yarn.sections,
+                  .pieces = yarn.pieces,
+                  .blend = yarn.blend,
+                  .adjustments = yarn.adjustments,
+                  .tolerance = tolerance};
+  const std::vector<double> bends = yarn.adjustments.bends_round();
+  for (Section& section : shape.sections) {
+    section.corners.insert(section.corners.end(), bends.begin(), bends.end());
+    section.corners = corners_of(std::array<const Section*, 1>{&section});
+  }
   if (!yarn.positions.empty()) shape.pieces = pieces_of_positions(shape.path, yarn.positions);
   if (shape.pieces.empty()) shape.pieces = constant_pieces(shape.path);
   const Result<YarnUnit> unit = surface_of(shape, most_control_points);
-  if (!unit) return fields.error(unit.error(), yarn.place);
+  if (!unit) return refuse(unit.error());
   std::vector<std::pair<Vec3, int>> lines = {{Vec3::Zero(), 1}};
   if (domain) {
     const auto found = Layer(yarn, *unit, fields).lines(*domain);
-    if (!found) return;
+    if (!found) return 0.0;
     lines = *found;
   }
   std::size_t points = 0;
   for (const auto& [shift, units] : lines)
     points += unit->grid.points.size() * static_cast<std::size_t>(units);
   if (points > most_control_points)
-    return fields.error(
+    return refuse(
         error(Kind::limit, fmt::format("the copies of this yarn in the domain would need more than {} "
                                        "control points; make the domain smaller",
-                                       most_control_points)),
-        yarn.place);
+                                       most_control_points)));
   if (lines.empty())
     fields.warning(yarn.place, "no copy of this yarn reaches into the domain: it is left out");
   const Vec3 period = yarn.nodes.back().position - yarn.nodes.front().position;
@@ -285,6 +303,7 @@ void lay(const TextileYarn& yarn, const std::optional<Domain>& domain, const Fie
     one.shape = std::move(grid);
     fabric.items.emplace_back(std::move(one));
   }
+  return unit->deviation;
 }
 
 }  // namespace selvage::formats::tg3

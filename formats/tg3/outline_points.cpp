@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/bounds.h"
 #include "nurbs/interpolate.h"
 #include "nurbs/spline.h"
 
@@ -16,14 +15,6 @@ constexpr Eigen::Index fewest_of_an_arc = 4;        // spans: its slopes at both
 
 double brought_in(double t) {
   return t < 1 ? t : t - 1;
-}
-
-Vec2 sizes_of(const Section& section) {
-  std::vector<Vec2> points;
-  constexpr int samples = 256;
-  for (int i = 0; i < samples; ++i) points.push_back(section.point(static_cast<double>(i) / samples));
-  for (const double corner : section.corners) points.push_back(section.point(corner));
-  return bounds_of(points).sizes();
 }
 
 // The length of the sections' outlines up to t, all sections together and each as if it were as wide as high,
@@ -67,21 +58,25 @@ class LengthTable {
 
 }  // namespace
 
-OutlinePoints::OutlinePoints(const std::vector<Section>& sections) {
+OutlinePoints::OutlinePoints(const std::vector<Section>& sections, double tolerance) {
   const std::size_t kept = sections.front().kept.size();
   is_straight_ = std::ranges::all_of(sections, &Section::is_straight);
   const bool is_kept =
       kept > 0 && std::ranges::all_of(sections, [&](const Section& one) { return one.kept.size() == kept; });
   if (is_kept) {
     take_kept(sections);
+    if (tolerance > 0) leave_out_corners(tolerance);
     return;
   }
   double largest = 0;
   for (const Section& section : sections) largest = std::max(largest, sizes_of(section).maxCoeff());
   for (int per_turn = fewest_round; per_turn <= most_round; per_turn *= 2) {
     place(sections, per_turn);
-    if (is_straight_ || worst_error(sections) <= round_share * largest) return;
+    if (is_straight_) break;
+    deviation_ = worst_error(sections);
+    if (deviation_ <= std::max(round_share * largest, tolerance)) return;
   }
+  if (is_straight_ && tolerance > 0) leave_out_corners(tolerance);
 }
 
 // The corners themselves, evenly.
@@ -91,6 +86,13 @@ void OutlinePoints::take_kept(const std::vector<Section>& sections) {
   for (std::size_t i = 0; i <= count; ++i)
     parameters_.push_back(static_cast<double>(i) / static_cast<double>(count));
   make_knots();
+}
+
+std::vector<double> OutlinePoints::section_parameters() const {
+  if (ts_.empty()) return {parameters_.begin(), parameters_.end() - 1};  // of corners that are kept
+  std::vector<double> ts;
+  for (const double t : ts_) ts.push_back(brought_in(t));
+  return ts;
 }
 
 void OutlinePoints::place(const std::vector<Section>& sections, int per_turn) {
@@ -127,6 +129,57 @@ void OutlinePoints::place(const std::vector<Section>& sections, int per_turn) {
     std::vector<Vec2>& points = points_.emplace_back();
     for (const double t : ts_) points.push_back(section.point(brought_in(t)));
   }
+  make_knots();
+}
+
+// Of the corners from `first` to `last` (which wraps round) those are kept that the algorithm of Ramer,
+// Douglas and Peucker keeps: the farthest one from the chord, of any section, while it is too far.
+void OutlinePoints::leave_out_corners(double tolerance) {
+  const std::size_t count = points_.front().size();
+  std::vector<bool> is_kept(count);
+  const auto farthest = [&](std::size_t first, std::size_t last) {
+    std::pair<double, std::size_t> worst = {0, first};
+    for (const std::vector<Vec2>& points : points_) {
+      const Vec2 from = points[first], chord = points[last % count] - from;
+      for (std::size_t i = first + 1; i < last; ++i) {
+        const Vec2 out = points[i] - from;
+        const double along =
+            chord.squaredNorm() > 0 ? std::clamp(out.dot(chord) / chord.squaredNorm(), 0.0, 1.0) : 0.0;
+        worst = std::max(worst, {(out - along * chord).norm(), i});
+      }
+    }
+    return worst;
+  };
+  std::vector<std::pair<std::size_t, std::size_t>> ranges = {{0, count}};
+  std::size_t kept = 0;
+  while (!ranges.empty()) {
+    const auto [first, last] = ranges.back();
+    ranges.pop_back();
+    if (!is_kept[first]) ++kept;
+    is_kept[first] = true;
+    const auto [distance, at] = farthest(first, last);
+    constexpr std::size_t fewest = 3;  // of a polygon
+    if (at == first || (distance <= tolerance && kept + ranges.size() >= fewest)) {
+      deviation_ = std::max(deviation_, distance);
+      continue;
+    }
+    ranges.emplace_back(at, last);
+    ranges.emplace_back(first, at);
+  }
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_kept[i]) continue;
+    for (std::vector<Vec2>& points : points_) points[next] = points[i];
+    parameters_[next] = parameters_[i];
+    if (!ts_.empty()) ts_[next] = ts_[i];
+    ++next;
+  }
+  for (std::vector<Vec2>& points : points_) points.resize(next);
+  parameters_[next] = parameters_.back();
+  parameters_.resize(next + 1);
+  if (!ts_.empty()) ts_.resize(next);
+  knots_.clear();
+  arcs_.clear();
   make_knots();
 }
 

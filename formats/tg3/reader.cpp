@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/bounds.h"
 #include "core/words.h"
 #include "formats/tg3/construction.h"
 #include "formats/tg3/lay.h"
@@ -30,19 +31,36 @@ const std::map<std::string_view, std::set<std::string_view>>& known_elements() {
       {"TexGenModel", {"Textile", "Domain"}},
       {"Textile", {"Domain", "Yarn", "PatternCell", "XYarnData", "YYarnData", "XYarns", "YYarns"}},
       {"Yarn", {"Interpolation", "YarnSection", "FibreDistribution", "Repeat", "MasterNode"}},
-      {"YarnSection", {"Section", "NodeSection", "PositionSection"}},
+      {"YarnSection", {"Section", "NodeSection", "PositionSection", "Adjustment", "YarnSection"}},
       {"NodeSection", {"Section", "MidNodeSection"}},
       {"MidNodeSection", {"Section"}},
       {"PositionSection", {"Section"}},
       {"Section", {"Section", "Division", "PolygonPoint", "BezierPoint"}},
       {"Interpolation", {"Interpolation", "Adjustment"}},
-      {"Adjustment", {"AdjustmentSection"}}};
+      {"Adjustment", {"AdjustmentSection"}},
+      {"AdjustmentSection", {"AdjustmentPerimeter"}}};
   return known;
+}
+
+std::size_t num_control_points(const fabric::Fabric& fabric) {
+  std::size_t count = 0;
+  for (const fabric::Item& item : fabric.items)
+    if (const auto* const yarn = std::get_if<fabric::Yarn>(&item))
+      if (const auto* const grid = std::get_if<fabric::Grid>(&yarn->shape)) count += grid->points.size();
+  return count;
+}
+
+// 1/1000 of the smallest size of the yarn's sections, as of tubes.
+double usual_tolerance(const TextileYarn& yarn) {
+  double smallest = infinity;
+  for (const Section& section : yarn.sections) smallest = std::min(smallest, sizes_of(section).minCoeff());
+  return 1e-3 * smallest;
 }
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : fields_(source, report), properties_(fields_, fabric_) {
+  Reader(const Source& source, TextReport& report)
+      : source_(source), fields_(source, report), properties_(fields_, fabric_) {
     fabric_.file = source.name();
   }
 
@@ -136,12 +154,38 @@ class Reader {
     for (const TextileYarn& yarn : textile.yarns) {
       if (fields_.is_full()) return;
       fields_.set_yarn(yarn.name);
-      lay(yarn, textile.domain, fields_, fabric_);
+      lay(yarn, textile.domain, 0, fields_, fabric_);
     }
     fields_.set_yarn({});
+    fit(element, textile);
     if (fabric_.items.empty() && fields_.errors() == 0)
       fields_.error(element, "the textile has no yarn in its domain");
     fabric_.tell_threads_their_materials();
+  }
+
+  // Surfaces that would be far larger than the file are laid within the usual tolerance of tubes.
+  void fit(const Element& element, const Textile& textile) {
+    constexpr std::size_t bytes_a_point = 200, most_times = 10,
+                          always = std::size_t{8} << 20U;  // as IGES, about
+    const std::size_t exact = num_control_points(fabric_);
+    if (fields_.errors() > 0 ||
+        bytes_a_point * exact <= std::max(most_times * source_.bytes().size(), always))
+      return;
+    TextReport said(source_);  // by the first turn
+    const Fields silent(source_, said);
+    fabric::Fabric fitted;
+    double deviation = 0;
+    for (const TextileYarn& yarn : textile.yarns)
+      deviation = std::max(deviation, lay(yarn, textile.domain, usual_tolerance(yarn), silent, fitted));
+    if (said.errors() > 0) return;
+    const std::size_t kept = num_control_points(fitted);
+    fabric_.items = std::move(fitted.items);
+    fields_.note(
+        element,
+        fmt::format("the surfaces are fitted to within {:.2g} {} of their sections, with {} control points "
+                    "instead of {}: in IGES about {:.2g} times the bytes of this file",
+                    deviation, name_of(fabric_.units), kept, exact,
+                    static_cast<double>(bytes_a_point * kept) / static_cast<double>(source_.bytes().size())));
   }
 
   void read_yarns(const Element& element, Textile& textile) {
@@ -177,6 +221,7 @@ class Reader {
     return roles;
   }
 
+  const Source& source_;
   Fields fields_;
   fabric::Fabric fabric_;
   Properties properties_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/bounds.h"
+
 namespace selvage::formats::tg3 {
 
 namespace {
@@ -160,6 +162,14 @@ std::vector<double> corners_of(std::span<const Section* const> sections) {
             all.end());
   if (!all.empty() && all.front() + 1 - all.back() < same_t) all.pop_back();
   return all;
+}
+
+Vec2 sizes_of(const Section& section) {
+  std::vector<Vec2> points;
+  constexpr int samples = 256;
+  for (int i = 0; i < samples; ++i) points.push_back(section.point(static_cast<double>(i) / samples));
+  for (const double corner : section.corners) points.push_back(section.point(corner));
+  return bounds_of(points).sizes();
 }
 
 double area_of(const Section& section, int samples) {

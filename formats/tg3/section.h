@@ -41,6 +41,9 @@ Result<Section> hybrid(std::vector<double> divisions, std::vector<Section> secti
 // The corners of all of them, each once.
 std::vector<double> corners_of(std::span<const Section* const> sections);
 
+// Of its box.
+Vec2 sizes_of(const Section& section);
+
 // Counter-clockwise positive, of `samples` chords between two corners each.
 double area_of(const Section& section, int samples = 64);
 

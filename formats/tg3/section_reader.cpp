@@ -56,13 +56,16 @@ std::optional<Section> read_lenticular(const Element& element, const Fields& fie
 std::optional<Section> read_polygon(const Element& element, const Fields& fields) {
   std::vector<Vec2> points = points_of(element, "PolygonPoint", fields);
   if (points.size() > 1 && points.front() == points.back()) points.pop_back();
+  const std::size_t written = points.size();
+  points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3)
     return refuse(element, fields,
                   fmt::format("this polygon has {} points: it needs three at least", points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i] == points[(i + 1) % points.size()])
-      return refuse(element, fields,
-                    fmt::format("point {} of this polygon equals the next one; remove one of them", i + 1));
+  if (points.size() < written)
+    fields.warning(element,
+                   fmt::format("{} of the {} points of this polygon equal the point before them and are "
+                               "left out",
+                               written - points.size(), written));
   return polygon(std::move(points), fields.flag(element, "RetainPoints", false));
 }
 

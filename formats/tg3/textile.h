@@ -24,6 +24,7 @@ struct TextileYarn {
   std::vector<BlendPiece> pieces{};
   std::vector<double> positions{};
   Blend blend{};
+  SectionAdjustments adjustments{};
   std::vector<Vec3> repeats{};  // the yarn stands at all sums of whole multiples of these as well
 };
 

@@ -5,6 +5,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 namespace selvage::formats::tg3 {
 
@@ -43,6 +45,11 @@ Vec3 slope_at(const std::vector<Adjustment>& adjustments, double t, double from)
   return (next->by - last->by) / (next->t - last->t);
 }
 
+bool is_across(const Vec3& up, const Vec3& tangent) {
+  constexpr double least = 1e-9;  // sine of the angle between them
+  return up.normalized().cross(tangent.normalized()).norm() >= least;
+}
+
 Message at_node(const PathNode& node, std::string text) {
   return error(Kind::geometry, std::move(text)).placed(node.place).at_point(node.position);
 }
@@ -58,6 +65,7 @@ Result<YarnPath> YarnPath::make(std::vector<PathNode> nodes, Interpolation inter
       return at_node(path.nodes_[i], "this node stands where the one before it stands; remove one of them");
   if (Status set = path.set_tangents(); !set) return set.error();
   if (path.interpolation_.form == Form::cubic) path.set_cubics();
+  path.replace_ups();
   if (Status checked = path.check_frames(); !checked) return checked.error();
   // Composite Gauss of three points, 16 to a span.
   constexpr int parts = 16;
@@ -127,6 +135,32 @@ void YarnPath::set_cubics() {
     tangents_[static_cast<std::size_t>(i)] = slopes.row(i % unknowns).transpose();
 }
 
+void YarnPath::replace_ups() {
+  const double steep = std::sin(6 * std::numbers::pi / 180);  // to z, as in Fabric TXT
+  std::vector<Vec3> along;
+  std::vector<bool> is_good;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::size_t span = std::min(i, spans() - 1);
+    along.push_back(unit_or_zero(line_at(span, i == span ? 0 : 1, 0.5).tangent));
+    is_good.push_back(along[i] == Vec3::Zero() || is_across(nodes_[i].up, along[i]));
+  }
+  const auto nearest_good = [&](std::size_t i) -> std::optional<std::size_t> {
+    for (std::size_t away = 1; away < nodes_.size(); ++away) {
+      if (i >= away && is_good[i - away]) return i - away;
+      if (i + away < nodes_.size() && is_good[i + away]) return i + away;
+    }
+    return std::nullopt;
+  };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (is_good[i]) continue;
+    ++num_replaced_ups_;
+    if (const std::optional<std::size_t> other = nearest_good(i))
+      nodes_[i].up = Eigen::Quaterniond::FromTwoVectors(along[*other], along[i]) * nodes_[*other].up;
+    else
+      nodes_[i].up = along[i].cross(Vec3::UnitZ()).norm() < steep ? Vec3::UnitY() : Vec3::UnitZ();
+  }
+}
+
 Status YarnPath::check_frames() const {
   constexpr int samples = 8;
   for (std::size_t i = 0; i < spans(); ++i)
@@ -139,7 +173,7 @@ Status YarnPath::check_frames() const {
         return at_node(nodes_[i],
                        "the directions `Up` of this node and of the next cancel each other between them; "
                        "turn one of them");
-      if (up.normalized().cross(tangent.normalized()).norm() < 1e-9)
+      if (!is_across(up, tangent))
         return at_node(nodes_[i], "the direction `Up` lies along the line at or behind this node; turn it");
     }
   return {};

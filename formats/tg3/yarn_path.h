@@ -43,8 +43,10 @@ struct PathJet {
 // the tangent.
 class YarnPath {
  public:
-  // Errors (geometry), at the node: fewer than two nodes, equal neighbours, a tangent or `up` that vanishes,
-  // an `up` along the line.
+  // An `up` that lies along the line at its node is replaced: by that of the nearest node which has a better
+  // one, turned as the line turns between them; without such a node by the default of Fabric TXT. Errors
+  // (geometry), at the node: fewer than two nodes, equal neighbours, a tangent or `up` that vanishes, an `up`
+  // along the line between two nodes.
   static Result<YarnPath> make(std::vector<PathNode> nodes, Interpolation interpolation);
 
   [[nodiscard]] std::size_t spans() const { return nodes_.size() - 1; }
@@ -52,6 +54,7 @@ class YarnPath {
   // t from 0 to 1; at an adjustment's own t the derivatives are those of the side of `from`.
   [[nodiscard]] PathJet at(std::size_t span, double t, double from) const;
   [[nodiscard]] double length(std::size_t span) const { return lengths_[span]; }
+  [[nodiscard]] std::size_t num_replaced_ups() const { return num_replaced_ups_; }
   [[nodiscard]] const Interpolation& interpolation() const { return interpolation_; }
   // The length of the range of a surface's parameter over the span, with which the line is as smooth as it
   // can be.
@@ -64,12 +67,14 @@ class YarnPath {
   [[nodiscard]] Line line_at(std::size_t span, double t, double from) const;
   Status set_tangents();
   void set_cubics();
+  void replace_ups();
   Status check_frames() const;
 
   std::vector<PathNode> nodes_;
   Interpolation interpolation_;
   std::vector<Vec3> tangents_;  // at the nodes; of a cubic the derivatives
   std::vector<double> lengths_;
+  std::size_t num_replaced_ups_ = 0;
 };
 
 }  // namespace selvage::formats::tg3

@@ -76,6 +76,7 @@ class YarnSections {
       take(element_);
       return;
     }
+    if (type == "CYarnSectionAdjusted") return read_adjusted();
     yarn_.blend.is_ramped = fields_.flag(element_, "Ramped", false);
     yarn_.blend.is_polar = fields_.flag(element_, "Polar", false);
     if (type == "CYarnSectionInterpNode") return read_nodes();
@@ -83,7 +84,7 @@ class YarnSections {
     fields_.error(element_,
                   fmt::format("sections of the type {} are not read{}", in_quotes(type),
                               did_you_mean(type, {"CYarnSectionConstant", "CYarnSectionInterpNode",
-                                                  "CYarnSectionInterpPosition"})),
+                                                  "CYarnSectionInterpPosition", "CYarnSectionAdjusted"})),
                   Kind::unsupported);
   }
 
@@ -95,6 +96,42 @@ class YarnSections {
     if (std::optional<Section> read = read_section(*section, fields_))
       yarn_.sections.push_back(std::move(*read));
     return yarn_.sections.empty() ? 0 : yarn_.sections.size() - 1;
+  }
+
+  // Other sections, whose outlines are shifted.
+  void read_adjusted() {
+    const Element* const inner = required(element_, "YarnSection", fields_);
+    if (inner == nullptr) return;
+    if (fields_.text(*inner, "type") == "CYarnSectionAdjusted") {
+      fields_.error(*inner, "adjusted sections of adjusted ones are not read; join their adjustments",
+                    Kind::unsupported);
+      return;
+    }
+    for (const Element& span : element_.children) {
+      if (span.name != "Adjustment" || fields_.is_full()) continue;
+      std::vector<SectionAdjustment> adjustments;
+      for (const Element& section : span.children)
+        if (section.name == "AdjustmentSection") adjustments.push_back(read_shifts(section));
+      std::ranges::stable_sort(adjustments, {}, &SectionAdjustment::t);
+      yarn_.adjustments.add_span(std::move(adjustments));
+    }
+    YarnSections(*inner, yarn_, fields_).read();
+  }
+
+  [[nodiscard]] SectionAdjustment read_shifts(const Element& section) const {
+    SectionAdjustment adjustment;
+    adjustment.t = fraction(section);
+    for (const Element& shift : section.children)
+      if (shift.name == "AdjustmentPerimeter")
+        adjustment.around.push_back({fraction(shift), fields_.pair(shift, "Vector")});
+    std::ranges::stable_sort(adjustment.around, {}, &OutlineShift::t);
+    return adjustment;
+  }
+
+  [[nodiscard]] double fraction(const Element& element) const {
+    const double t = fields_.number(element, "T");
+    if (t < 0 || t > 1) fields_.error(element, fmt::format("T is {}: it is a fraction, from 0 to 1", t));
+    return t;
   }
 
   // A section at each node, and others between it and the next.

@@ -48,7 +48,10 @@ struct Interval {
 
 class Surface {
  public:
-  explicit Surface(const YarnShape& shape) : shape_(shape), outline_(shape.sections) {
+  explicit Surface(const YarnShape& shape)
+      : shape_(shape),
+        outline_(shape.sections, shape.adjustments.is_empty() ? shape.tolerance / 2 : 0.0),
+        ts_(outline_.section_parameters()) {
     for (const BlendPiece& piece : shape.pieces) add_cut(piece);
     parts_.assign(pieces_.size(), 1);
     thinnest_ = infinity;
@@ -77,13 +80,15 @@ class Surface {
   }
 
  private:
-  // A piece, cut where the line is adjusted.
+  // A piece, cut where the line or its sections are adjusted.
   void add_cut(const BlendPiece& piece) {
-    std::vector<double> cuts = {piece.t0};
+    std::vector<double> cuts = {piece.t0}, bends = shape_.adjustments.bends_along(piece.span);
     const auto& adjustments = shape_.path.interpolation().adjustments;
     if (piece.span < adjustments.size())
-      for (const Adjustment& adjustment : adjustments[piece.span])
-        if (adjustment.t > cuts.back() + 1e-9 && adjustment.t < piece.t1 - 1e-9) cuts.push_back(adjustment.t);
+      for (const Adjustment& adjustment : adjustments[piece.span]) bends.push_back(adjustment.t);
+    std::sort(bends.begin(), bends.end());
+    for (const double t : bends)
+      if (t > cuts.back() + 1e-9 && t < piece.t1 - 1e-9) cuts.push_back(t);
     cuts.push_back(piece.t1);
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
       BlendPiece part = piece;
@@ -105,11 +110,13 @@ class Surface {
     const std::vector<Vec2>&p = outline_.points()[piece.from], &q = outline_.points()[piece.to];
     RowJet row{Row(p.size(), 3), Row(p.size(), 3)};
     for (std::size_t i = 0; i < p.size(); ++i) {
-      const auto [point, by_u] = blended(p[i], q[i], u, shape_.blend);
+      const auto [blend, by_u] = blended(p[i], q[i], u, shape_.blend);
+      const auto [shift, shift_dt] = shape_.adjustments.at(piece.span, t, from, ts_[i]);
+      const Vec2 point = blend + shift, by_t = du * by_u + shift_dt;
       const auto k = static_cast<Eigen::Index>(i);
       row.at.row(k) = jet.position + point.x() * jet.side + point.y() * jet.up;
       row.slope.row(k) = pace * (jet.position_dt + point.x() * jet.side_dt + point.y() * jet.up_dt +
-                                 du * (by_u.x() * jet.side + by_u.y() * jet.up));
+                                 by_t.x() * jet.side + by_t.y() * jet.up);
     }
     return row;
   }
@@ -160,6 +167,7 @@ class Surface {
   // Doubles the parts of the pieces that are too far off; false: none is.
   bool refine() {
     bool any = false;
+    deviation_ = 0;
     std::size_t j = 0;
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
       double worst = 0;
@@ -171,7 +179,9 @@ class Surface {
           worst = std::max(worst, (miss - miss.dot(along) / along.squaredNorm() * along).norm());
         }
       }
-      if (worst <= along_share * thinnest_ || parts_[k] >= most_parts) continue;
+      deviation_ = std::max(deviation_, worst);
+      if (worst <= std::max(along_share * thinnest_, shape_.tolerance / 2) || parts_[k] >= most_parts)
+        continue;
       parts_[k] *= 2;
       any = true;
     }
@@ -208,17 +218,19 @@ class Surface {
     for (std::size_t j = 0; j < rows.size(); ++j)
       for (Eigen::Index i = 0; i < control.rows(); ++i)
         grid.points.emplace_back(control.row(i).segment<3>(3 * static_cast<Eigen::Index>(j)).transpose());
+    unit.deviation = outline_.deviation() + deviation_;
     unit.goes_on = goes_on();
     return unit;
   }
 
   const YarnShape& shape_;
   OutlinePoints outline_;
+  std::vector<double> ts_;  // of its points
   std::vector<BlendPiece> pieces_;
   std::vector<int> parts_;
   std::vector<Interval> intervals_;
   std::vector<bool> bends_;  // behind interval j - 1
-  double thinnest_ = 0, widest_ = 0;
+  double thinnest_ = 0, widest_ = 0, deviation_ = 0;
 };
 
 }  // namespace

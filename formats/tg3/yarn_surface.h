@@ -12,6 +12,7 @@
 #include "core/diagnostics.h"
 #include "fabric/model.h"
 #include "formats/tg3/section.h"
+#include "formats/tg3/section_adjustment.h"
 #include "formats/tg3/yarn_path.h"
 
 namespace selvage::formats::tg3 {
@@ -39,6 +40,10 @@ struct YarnShape {
   std::vector<Section> sections;   // one at least
   std::vector<BlendPiece> pieces;  // one behind the other, from the first node to the last
   Blend blend{};
+  SectionAdjustments adjustments{};
+  // How far the surface may be from the blended sections, half of it round and half of it along; 0: as near
+  // as outline_points.h and along_share say.
+  double tolerance = 0;
 };
 
 // One section everywhere.
@@ -50,6 +55,7 @@ std::vector<BlendPiece> pieces_of_positions(const YarnPath& path, const std::vec
 // The yarn from its first node to its last, open.
 struct YarnUnit {
   fabric::Grid grid;
+  double deviation = 0;  // from the blended sections, at most, as far as it was measured
   bool goes_on = false;  // its end is its beginning, shifted: units follow each other as one surface
 };
 

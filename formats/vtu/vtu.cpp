@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/text_buffer.h"
+#include "core/xml_text.h"
 #include "fem/quality.h"
 #include "formats/vtu/encoding.h"
 #include "formats/vtu/reader.h"
@@ -186,6 +187,14 @@ std::string comment_text(std::string name) {
   return name;
 }
 
+// An array for each, which is called like it and holds its number: programs that read arrays of numbers alone
+// have the names, too.
+void write_names(TextBuffer& text, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text << "      <DataArray type=\"Int32\" Name=\"" << xml_text(names[i])
+         << "\" NumberOfTuples=\"1\" format=\"ascii\">" << i << "</DataArray>\n";
+}
+
 // The file up to its data; `names`: of the yarns, and of interfaces.
 void write_grid(TextBuffer& text, const std::vector<std::string>& names,
                 const std::vector<std::string>& interfaces, const std::vector<Vec3>& points,
@@ -198,8 +207,15 @@ void write_grid(TextBuffer& text, const std::vector<std::string>& names,
   text << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
        << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
        << "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
-       << "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" << points.size() << "\" NumberOfCells=\""
-       << cells.count() << "\">\n      <Points>\n";
+       << "  <UnstructuredGrid>\n";
+  if (!names.empty() || !interfaces.empty()) {
+    text << "    <FieldData>\n";
+    write_names(text, names);
+    write_names(text, interfaces);
+    text << "    </FieldData>\n";
+  }
+  text << "    <Piece NumberOfPoints=\"" << points.size() << "\" NumberOfCells=\"" << cells.count()
+       << "\">\n      <Points>\n";
   write_array(text, "Points", flat(points), 3);
   text << "      </Points>\n      <Cells>\n";
   write_cells(text, cells);

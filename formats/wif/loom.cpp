@@ -51,13 +51,19 @@ Shafts each_once(Shafts shafts) {
   return shafts;
 }
 
+// Of what threads and picks need: the draft counts it.
+Counted strict(Counted counted) {
+  counted.is_soft = false;
+  return counted;
+}
+
 // The shafts or treadles that an entry names. Zeros say "none" and are left out.
-Shafts named(const Numbered& line, const Counted& counted, TextReport& report) {
+Shafts named(const Numbered& line, const Counted& counted, Surplus* surplus, TextReport& report) {
   std::optional<Shafts> values = whole_numbers(*line.entry, report);
   if (!values) return {};
   std::erase(*values, 0);
   for (const int value : *values)
-    if (!is_within(value, counted, *line.entry, report)) return {};
+    if (!is_within(value, counted, *line.entry, surplus, report)) return {};
   return each_once(std::move(*values));
 }
 
@@ -81,7 +87,7 @@ std::optional<Threading> read_threading(const Ini& ini, const Loom& loom, TextRe
   const std::vector<Numbered> lines = numbered(*section, loom.warp, report);
   threading.ends = reach(*section, lines, loom.warp, report);
   for (const Numbered& line : lines) {
-    const Shafts shafts = named(line, loom.shafts, report);
+    const Shafts shafts = named(line, strict(loom.shafts), nullptr, report);
     for (const int shaft : shafts)
       threading.ends_of_shaft[shaft].push_back(static_cast<std::size_t>(line.number) - 1);
   }
@@ -92,16 +98,20 @@ std::optional<Threading> read_threading(const Ini& ini, const Loom& loom, TextRe
 
 std::map<int, Shafts> read_tieup(const Section& section, const Loom& loom, TextReport& report) {
   std::map<int, Shafts> tieup;
+  Surplus surplus(loom.shafts);
   for (const Numbered& line : numbered(section, loom.treadles, report))
-    tieup[line.number] = named(line, loom.shafts, report);
+    tieup[line.number] = named(line, loom.shafts, &surplus, report);
+  surplus.report_of(section, report);
   return tieup;
 }
 
 Lifts read_liftplan(const Section& section, const Loom& loom, TextReport& report) {
   const std::vector<Numbered> lines = numbered(section, loom.weft, report);
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
+  Surplus surplus(loom.shafts);
   for (const Numbered& line : lines)
-    lifts[static_cast<std::size_t>(line.number) - 1] = named(line, loom.shafts, report);
+    lifts[static_cast<std::size_t>(line.number) - 1] = named(line, loom.shafts, &surplus, report);
+  surplus.report_of(section, report);
   return lifts;
 }
 
@@ -115,7 +125,7 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
   std::size_t all = 0;
   for (const Numbered& line : lines) {
     Shafts& moved = lifts[static_cast<std::size_t>(line.number) - 1];
-    for (const int treadle : named(line, loom.treadles, report)) {
+    for (const int treadle : named(line, strict(loom.treadles), nullptr, report)) {
       const auto tied = tieup.find(treadle);
       if (tied != tieup.end()) {
         all += tied->second.size();

@@ -11,7 +11,8 @@ namespace selvage::formats::wif {
 
 // What [WEAVING], [WARP] and [WEFT] say of the numbers.
 struct Loom {
-  Counted warp{"thread"}, weft{"thread"}, shafts{"shaft"}, treadles{"treadle"};
+  Counted warp{"thread"}, weft{"thread"};
+  Counted shafts{.noun = "shaft", .is_soft = true}, treadles{.noun = "treadle", .is_soft = true};
   bool is_rising = true;  // a moved shaft goes up
 };
 

@@ -40,6 +40,11 @@ std::optional<int> key_number(const Entry& entry, std::string_view noun, TextRep
                              : fmt::format("{} is not the number of a {}", in_quotes(entry.key), noun));
 }
 
+// Of a number beyond counted.most.
+bool is_taken(int number, const Counted& counted) {
+  return counted.is_soft && number <= most_threads;
+}
+
 std::string beyond(int number, const Counted& counted) {
   return counted.limit.empty()
              ? fmt::format("{} {} is beyond the {} that are taken", counted.noun, number, counted.most)
@@ -94,8 +99,26 @@ bool Numbered::is_nothing() const {
   return value.empty() || parsed<int>(value) == 0;
 }
 
-bool is_within(int number, const Counted& counted, const Entry& entry, TextReport& report) {
+void Surplus::add(int number, const Spot& spot) {
+  if (numbers_.empty()) first_ = spot;
+  numbers_.insert(number);
+}
+
+void Surplus::report_of(const Section& section, TextReport& report) const {
+  if (numbers_.empty()) return;
+  const std::string more =
+      numbers_.size() > 1 ? fmt::format(" (and {} more)", numbers_.size() - 1) : std::string();
+  report.warning(first_, fmt::format("[{}] has {} {}{}, and {} says {} {}s: it is taken as the loom has it",
+                                     section.name, counted_.noun, *numbers_.begin(), more, counted_.limit,
+                                     counted_.most, counted_.noun));
+}
+
+bool is_within(int number, const Counted& counted, const Entry& entry, Surplus* surplus, TextReport& report) {
   if (number >= 1 && number <= counted.most) return true;
+  if (number > counted.most && is_taken(number, counted) && surplus != nullptr) {
+    surplus->add(number, entry.value_spot);
+    return true;
+  }
   report.error(entry.value_spot,
                number < 1 ? fmt::format("there is no {} {}: they count from 1", counted.noun, number)
                           : beyond(number, counted));
@@ -105,19 +128,25 @@ bool is_within(int number, const Counted& counted, const Entry& entry, TextRepor
 std::vector<Numbered> numbered(const Section& section, const Counted& counted, TextReport& report) {
   std::vector<Numbered> lines;
   lines.reserve(section.entries.size());
+  Surplus surplus(counted);
   for (const Entry& entry : section.entries) {
     if (!entry.has_value) report.warning(entry.key_spot, "a line without '='");
     const std::optional<int> number = key_number(entry, counted.noun, report);
     if (!number) continue;
     const Numbered line{*number, &entry};
-    if (*number <= counted.most)
+    if (*number <= counted.most) {
       lines.push_back(line);
-    else if (line.is_nothing())
+    } else if (line.is_nothing()) {
       report.warning(entry.key_spot, beyond(*number, counted) + "; it is passed by");
-    else
+    } else if (is_taken(*number, counted)) {
+      surplus.add(*number, entry.key_spot);
+      lines.push_back(line);
+    } else {
       report.error(entry.key_spot, beyond(*number, counted),
                    counted.limit.empty() ? Kind::limit : Kind::malformed);
+    }
   }
+  surplus.report_of(section, report);
   std::stable_sort(lines.begin(), lines.end(),
                    [](const Numbered& a, const Numbered& b) { return a.number < b.number; });
   std::vector<Numbered> once;

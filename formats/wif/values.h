@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -37,14 +38,32 @@ struct Counted {
   std::string_view noun;  // "thread"
   int most = most_threads;
   std::string_view limit = {};
+  // Numbers beyond `most` are taken, too, with a warning: programs write the tie-up of the whole loom, and
+  // count the shafts and treadles that the draft needs.
+  bool is_soft = false;
 };
 
-// Is `number` within 1..most? Else an error at `entry`'s value that says so.
-bool is_within(int number, const Counted& counted, const Entry& entry, TextReport& report);
+// Numbers of one section beyond those that it counts, for one warning.
+class Surplus {
+ public:
+  explicit Surplus(const Counted& counted) : counted_(counted) {}
+  void add(int number, const Spot& spot);
+  void report_of(const Section& section, TextReport& report) const;
 
-// The section's entries with numbers 1..counted.most, ascending. Errors: other keys, and greater numbers
-// unless they carry nothing, which is a warning like a number that stands there twice (the first one counts)
-// or a line without '='.
+ private:
+  const Counted& counted_;
+  std::set<int> numbers_;
+  Spot first_;
+};
+
+// Is `number` within 1..most, or taken beyond that (`surplus`, which may be null where the count is
+// not soft)? Else an error at `entry`'s value that says
+// so.
+bool is_within(int number, const Counted& counted, const Entry& entry, Surplus* surplus, TextReport& report);
+
+// The section's entries with numbers 1..counted.most, ascending, and greater ones where the count is soft.
+// Errors: other keys, and greater numbers unless they carry nothing, which is a warning like a number that
+// stands there twice (the first one counts) or a line without '='.
 std::vector<Numbered> numbered(const Section& section, const Counted& counted, TextReport& report);
 
 }  // namespace selvage::formats::wif

@@ -224,10 +224,11 @@ bool has_densities(const Knit& knit) {
   return knit.wale_pitch > 0 || knit.course_pitch > 0 || knit.loop || knit.unit;
 }
 
+constexpr long long most_tried = 400;  // loops
+
 // How many times larger the cloth has to be for its yarn, surely. None where eight times does not help.
 std::optional<double> least_enlargement(const Knit& knit, KnitField field, const KnitYarn& yarn) {
   // A cloth that does not repeat is tried as a whole.
-  constexpr long long most_tried = 400;
   if (field.chart.journeys() != nullptr && KnitMoves::loops_solved(field) > most_tried) return std::nullopt;
   const auto fits = [&](double larger) {
     const Result<LoopShape> shape = shape_of(knit, field, yarn.half, larger);
@@ -275,20 +276,53 @@ Status check_pitches(const Fabric& fabric, const Knit& knit, const yarn::Section
   return {};
 }
 
-Message no_room(const Fabric& fabric, const Knit& knit, const KnitField& field, const KnitYarn& yarn) {
-  const std::string_view unit = name_of(fabric.units);
+// What is left between the yarns of solved loops; not above 0: they overlap.
+double left_between(const Mending& mending, const KnitYarn& yarn) {
+  return yarn.gap - mending.missing * yarn.half.x();
+}
+
+// Are the loops apart when all lengths of the cloth but the yarn's are so many times larger?
+bool has_room(const Knit& knit, const KnitField& field, const KnitYarn& yarn, double larger) {
+  const Result<LoopShape> enlarged = shape_of(knit, field, yarn.half, larger);
+  if (!enlarged) return false;
+  KnitField tried = field;
+  tried.shape = *enlarged;
+  return left_between(KnitMoves(tried, yarn).mending(), yarn) > 0;
+}
+
+// Three digits.
+double rounded_down(double value) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  return std::floor(value / step) * step;
+}
+
+// Of a yarn of three digits. None: none was found, and what the loops lack is not room.
+std::optional<double> enlargement_with_room(const Knit& knit, const KnitField& field, const KnitYarn& yarn) {
+  std::vector<double> tried = {1.25, 1.5, 2, 3};
+  if (KnitMoves::loops_solved(field) > most_tried && field.chart.journeys() != nullptr) return std::nullopt;
+  if (const std::optional<double> least = least_enlargement(knit, field, yarn))
+    tried.insert(tried.begin(), *least);
   const double across = 2 * yarn.half.x();
-  std::string text =
-      fmt::format("a yarn of {:.4g} {} has no room in loops of these courses and wales", across, unit);
-  if (const std::optional<double> larger = least_enlargement(knit, field, yarn)) {
-    const LoopShape& shape = field.shape;
-    text += fmt::format(
-        ": a yarn of {:.3g} at most has (a tex or a packing {:.3g} times that), or courses {:.4g} "
-        "and wales {:.4g} apart",
-        across / *larger, 1 / (*larger * *larger), shape.course * yarn.half.x() * *larger,
-        shape.wale * yarn.half.x() * *larger);
-    if (knit.loop) text += fmt::format(" with loops of {:.4g}", *knit.loop * *larger);
-  }
+  for (const double larger : tried)
+    if (const double rounded = across / rounded_down(across / larger); has_room(knit, field, yarn, rounded))
+      return rounded;
+  return std::nullopt;
+}
+
+// The error with the sizes that have room.
+std::optional<Message> no_room(const Fabric& fabric, const Knit& knit, const KnitField& field,
+                               const KnitYarn& yarn) {
+  const std::optional<double> larger = enlargement_with_room(knit, field, yarn);
+  if (!larger) return std::nullopt;
+  const double across = 2 * yarn.half.x();
+  const LoopShape& shape = field.shape;
+  std::string text = fmt::format(
+      "a yarn of {:.4g} {} has no room in loops of these courses and wales: a yarn of {:.3g} at most has (a "
+      "tex "
+      "or a packing {:.3g} times that), or courses {:.4g} and wales {:.4g} apart",
+      across, name_of(fabric.units), across / *larger, 1 / (*larger * *larger),
+      shape.course * yarn.half.x() * *larger, shape.wale * yarn.half.x() * *larger);
+  if (knit.loop) text += fmt::format(" with loops of {:.4g}", *knit.loop * *larger);
   return error(Kind::geometry, std::move(text));
 }
 
@@ -329,8 +363,9 @@ Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const Thickes
             .placed(knit.place, fabric.file));
   if (mending.is_solved()) return moves;
   const double gap = gap_of(fabric, size, options);
-  const double left = yarn.gap - 0.5 * mending.missing * size.width;
-  if (left <= 0.0 && has_densities(knit)) return no_room(fabric, knit, field, yarn);
+  const double left = left_between(mending, yarn);
+  if (left <= 0.0 && has_densities(knit))
+    if (const std::optional<Message> refused = no_room(fabric, knit, field, yarn)) return *refused;
   const std::string near = fmt::format("near ({:.4g}, {:.4g}, {:.4g})", mending.at.x() * size.width / 2,
                                        mending.at.y() * size.width / 2, mending.at.z() * size.height / 2);
   warn(left > 0.0 ? fmt::format("the loops of this knit come nearer to each other than is wanted: {} about "

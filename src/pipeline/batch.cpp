@@ -374,7 +374,9 @@ Status Batch::write_table() const {
 
 Status Batch::write_junit(const std::vector<Message>& missing) const {
   if (options_.junit.empty()) return {};
-  const std::string_view word = options_.command == Command::diff ? "diff" : "roundtrip";
+  const std::string_view word = options_.command == Command::diff    ? "diff"
+                                : options_.command == Command::check ? "check"
+                                                                     : "roundtrip";
   std::vector<JunitInput> all;
   for (std::size_t i = 0; i < reports_.size(); ++i)
     all.push_back({plan_.inputs().at(i).name(), std::string(reports_[i])});

@@ -46,6 +46,20 @@ std::string outcome(std::string_view element, const std::string& text) {
                      escaped(text), element);
 }
 
+void add_check(const JunitInput& input, const Json& entry, Suite& suite) {
+  Case& one = suite.cases.emplace_back();
+  one.class_name = input.path;
+  one.name = "check";
+  one.seconds = entry.value("seconds", 0.0);
+  if (entry.value("defect", false)) {
+    ++suite.failures;
+    one.body = outcome("failure", errors_of(entry));
+  } else if (!entry.value("ok", false)) {
+    ++suite.errors;
+    one.body = outcome("error", errors_of(entry));
+  }
+}
+
 void add_cases(std::string_view command, const JunitInput& input, Suite& suite) {
   const Json entry = Json::parse(input.entry, nullptr, false);
   if (!entry.is_object()) {
@@ -53,6 +67,7 @@ void add_cases(std::string_view command, const JunitInput& input, Suite& suite) 
     suite.cases.push_back({input.path, std::string(command), "<skipped/>", 0});
     return;
   }
+  if (command == "check") return add_check(input, entry, suite);
   if (const auto things = entry.find("compared"); things != entry.end() && things->is_array()) {
     for (const Json& thing : *things) {
       Case& one = suite.cases.emplace_back();

@@ -190,6 +190,7 @@ void mesh(Job& job) {
   const Options& options = job.options;
   std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric || !has_only_yarns(job, *fabric)) return;
+  if (!set_matrix_material(job, *fabric)) return;
   if (options.wants_cell() && !check_cell_text(job, *fabric, options.matrix && !options.pores)) return;
   fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;

@@ -12,8 +12,8 @@
 #include "pipeline/view.h"
 #include "view/legend.h"
 #include "view/mesh_picture.h"
-#include "view/role_color.h"
 #include "view/scale_bar.h"
+#include "yarn/role_color.h"
 
 namespace selvage::pipeline {
 
@@ -124,8 +124,8 @@ view::MeshSurface surface_of(const FieldMesh& mesh, const Chosen& chosen,
     if (shown && !shown->of_nodes) surface.values.push_back(shown->values[element_of[outside.element[k]]]);
     if (!shown)
       surface.colors.push_back(fem::is_matrix(mesh.regions[element.region])
-                                   ? view::matrix_color
-                                   : view::hue_color(element.region));
+                                   ? yarn::matrix_color
+                                   : yarn::hue_color(element.region));
   }
   return surface;
 }

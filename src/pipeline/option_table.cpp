@@ -156,7 +156,7 @@ void inputs_and_outputs(OptionTable& t) {
   t.option(on_batch, "--report", "write a JSON report to this file", file, &Options::report);
   t.option({info}, "--csv", "write a table of the data sheets to this file, a row an input", file,
            &Options::csv);
-  t.option({roundtrip, diff}, "--junit", "write the results as JUnit XML to this file", file,
+  t.option({check, roundtrip, diff}, "--junit", "write the results as JUnit XML to this file", file,
            &Options::junit);
   t.option(on_batch, "--set", "another value of a param of the input (more than one: selvage sweep)",
            Argument::texts("NAME=VALUE"), into(&Options::sweep, &SweepWords::sets))
@@ -202,11 +202,10 @@ void of_yarns(OptionTable& t) {
       "of surfaces that are written, and of lengths that are shown (default: the input's, which costs no "
       "bits)",
       "m cm mm um inch", &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
-  t.option(
-       {convert, relax}, "--chord",
-       "how far triangles may be from the surfaces that they stand for, in the input's unit (default: the "
-       "tolerance)",
-       Argument::positive(), &Options::chord)
+  t.option({convert, relax}, "--chord",
+           "how far triangles may be from the surfaces that they stand for, in the input's unit (default: "
+           "1/100 of the yarn's thinnest section)",
+           Argument::positive(), &Options::chord)
       .goes_with("is of triangles", "", "--cut --matrix --lines");
   t.choice({convert, check, relax, mesh, roundtrip, info}, "--ends",
            "how a yarn is sealed (default: as the input has it, else patch)", "patch fan planar none",
@@ -400,6 +399,12 @@ void of_a_cell(OptionTable& t) {
       {convert, mesh}, "--matrix",
       "with them what they leave of the cell, the matrix, which shares its faces with theirs (implies --cut)",
       &Options::matrix);
+  t.option({mesh}, "--matrix-material",
+           "the material of the matrix: a material of the input, or Young's modulus (MPa) and Poisson's "
+           "ratio, as "
+           "3400,0.35 (default: as the input's cell says)",
+           Argument::text("NAME|E,NU"), &Options::matrix_material)
+      .goes_with("is of a matrix", "--matrix", "--pores");
   t.flag({mesh}, "--pores",
          "instead of yarns and matrix the space between the yarns, for a fluid: a wall for each yarn, inlet "
          "and outlet on the cell's faces, or with --periodic pairs of them (to OpenFOAM, Gmsh, ANSYS, VTK)",

@@ -132,10 +132,12 @@ struct Options {
   FormingSettings forming;
 
   // The unit cell: of `mesh` and `convert`.
-  bool cut = false;            // by the cell's faces
-  bool matrix = false;         // with the rest of the cell
-  bool pores = false;          // the rest of the cell alone, as a space for a fluid (implies matrix)
-  int layers = 0;              // of wedges along the walls of pores
+  bool cut = false;     // by the cell's faces
+  bool matrix = false;  // with the rest of the cell
+  std::string
+      matrix_material;  // of the cell's matrix: a name, or modulus and Poisson's ratio; empty: the input's
+  bool pores = false;   // the rest of the cell alone, as a space for a fluid (implies matrix)
+  int layers = 0;       // of wedges along the walls of pores
   double layer_thickness = 0;  // of all of them, input's unit; 0: the mesher's choice
   bool periodic = false;       // opposite faces alike, and equations between them
   int segments = 0;            // edges round each yarn; 0: by size

@@ -12,6 +12,8 @@
 
 #include "cell/cut.h"
 #include "contact/contact.h"
+#include "core/number_text.h"
+#include "core/text_report.h"
 #include "fabric/repeat.h"
 #include "fabric/settle_cell.h"
 #include "fem/cell_kind.h"
@@ -93,6 +95,35 @@ double gap_of_constructions(const Options& options, const fabric::Fabric& fabric
   return default_gap_share * fabric::smallest_section(fabric).value_or(0.0);
 }
 
+bool set_matrix_material(Job& job, fabric::Fabric& fabric) {
+  const std::string& given = job.options.matrix_material;
+  if (given.empty() || !fabric.cell) return true;
+  if (fabric.find_material(given) != nullptr) {
+    fabric.cell->matrix = given;
+    return true;
+  }
+  const std::size_t comma = given.find(',');
+  const std::optional<double> modulus = read_number(std::string_view(given).substr(0, comma));
+  const std::optional<double> poisson =
+      comma == std::string::npos ? std::nullopt : read_number(std::string_view(given).substr(comma + 1));
+  if (!modulus || !poisson || !(*modulus > 0) || !(*poisson > -1 && *poisson < 0.5)) {
+    std::string names;
+    for (const fabric::Material& material : fabric.materials) names += fmt::format(" '{}'", material.name);
+    job.fail(error(
+        Kind::usage,
+        fmt::format("--matrix-material {} is no material of this input ({}); write a Young's modulus above "
+                    "0 in MPa and a Poisson's ratio from -1 to 0.5, as --matrix-material 3400,0.35",
+                    in_quotes(given), names.empty() ? "it has none" : names.substr(1))));
+    return false;
+  }
+  fabric::Material matrix;
+  matrix.name = "given_matrix";
+  matrix.elastic = fabric::IsotropicElastic{*modulus, *poisson};
+  fabric.cell->matrix = matrix.name;
+  fabric.materials.push_back(std::move(matrix));
+  return true;
+}
+
 bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix) {
   if (!fabric.cell)
     return job.fail(
@@ -102,11 +133,11 @@ bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix) {
   if (with_matrix && fabric.cell->matrix.empty())
     return job.fail(cell_error(
         fabric,
-        fmt::format("this cell names no matrix: add the line `matrix NAME` with one "
-                    "of the file's materials{}, or mesh the yarns alone, without "
-                    "--matrix",
-                    fabric.materials.empty() ? std::string(" (there is none yet)")
-                                             : fmt::format(", such as '{}'", fabric.materials.back().name))));
+        fmt::format(
+            "this cell names no matrix: add the line `matrix NAME` with one of the file's materials{}, or "
+            "--matrix-material E,NU (MPa, as 3400,0.35), or mesh the yarns alone, without --matrix",
+            fabric.materials.empty() ? std::string(" (there is none yet)")
+                                     : fmt::format(", such as '{}'", fabric.materials.back().name))));
   return true;
 }
 

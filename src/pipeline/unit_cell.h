@@ -21,6 +21,8 @@ double gap_of_constructions(const Options& options, const fabric::Fabric& fabric
 // The message, said of the `cell` statement where it has no place in the text of its own.
 Message at_cell(const fabric::Fabric& fabric, Message message);
 
+// --matrix-material, where it is given and there is a cell. False: it was said that it is no material.
+bool set_matrix_material(Job& job, fabric::Fabric& fabric);
 // Is there a cell, with a matrix where one is wanted? False: it was said what is missing.
 bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix);
 

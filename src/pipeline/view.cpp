@@ -150,10 +150,10 @@ void view_mesh(Job& job, const formats::Descriptor& format) {
 std::optional<Message> not_of_yarns(const Options& given) {
   if (given.field.empty() && given.step == 0 && !given.deformed && !given.shown_matrix && given.deck.empty())
     return std::nullopt;
-  return error(
-      Kind::unsupported,
-      "--field, --step, --deformed, --show-matrix and --deck are of meshes and results (VTU, FRD), and this "
-      "is none");
+  return error(Kind::unsupported,
+               "--field, --step, --deformed, --show-matrix and --deck are of meshes and results (VTU, FRD, "
+               "INP, MSH), and "
+               "this is none");
 }
 
 }  // namespace

@@ -87,6 +87,19 @@ class CellInput(Case):
         self.assertIn("names no matrix: add the line `matrix NAME`", message)
         self.assertIn("'resin'", message)
 
+    def test_a_matrix_of_the_command_line(self):
+        """Of a cell that names none: by a name, or by modulus and Poisson's ratio."""
+        path = self.folder / "cell.txt"
+        path.write_text(PLAIN + cell("0 0 -0.35 3 3 0.35", "  periodic x y\n"))
+        for given, modulus in (("resin", None), ("3400,0.35", "3400")):
+            deck = self.folder / "cell.inp"
+            self.succeeds("mesh", path, "--matrix", "--voxel", 6, "--matrix-material", given, "-o", deck)
+            self.assertTrue(modulus is None or re.search(rf"(?m)^{modulus}(\.0*)?, *0\.35$", deck.read_text()))
+        for given in ("resinn", "3400", "-1,0.3", "3400,0.6"):
+            done = self.fails(1, "mesh", path, "--matrix", "--voxel", 6, "--matrix-material", given, "-o", deck)
+            self.assertIn("is no material of this input", done)
+            self.assertIn("'resin'", done)
+
     def test_no_yarn_enters(self):
         text = PLAIN + cell("0 0 5 3 3 6")
         message = self.refuses(text)

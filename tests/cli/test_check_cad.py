@@ -3,6 +3,7 @@
 import json
 import re
 import unittest
+import xml.etree.ElementTree
 
 from program import GRID, PATH, RING, Case, run
 
@@ -27,6 +28,29 @@ class CheckCad(Case):
             if line.startswith(beginning):
                 return number
         self.fail(beginning)
+
+    def test_junit(self):
+        """A test case an input: sound, with defects, unreadable."""
+        deep = self.folder / "deep.txt"
+        deep.write_text(
+            "fabric 1\n"
+            + "".join(
+                f"yarn {name}\n  diameter 0.4\n  path\n    0 0 {z}\n    1 0 {z}\n  end\nend\n"
+                for name, z in (("a", 0), ("b", 0.2))
+            )
+        )
+        bad = self.folder / "bad.txt"
+        bad.write_text("fabric 1\nyarm a\n")
+        path = self.folder / "check.xml"
+        self.assertEqual(run("check", GRID, deep, bad, "--junit", path).returncode, 1)
+        suite = xml.etree.ElementTree.parse(path).getroot().find("testsuite")
+        self.assertEqual(
+            [suite.get(key) for key in ("name", "tests", "failures", "errors")], ["selvage check", "3", "1", "1"]
+        )
+        cases = {case.get("classname"): case for case in suite}
+        self.assertEqual(len(cases[str(GRID)]), 0)
+        self.assertIn("overlap", cases[str(deep)].find("failure").text)
+        self.assertIn("yarm", cases[str(bad)].find("error").text)
 
     def test_own_files_are_sound(self):
         for name, options in (("a.igs", ()), ("b.igs", ("--iges-solid",)), ("c.stp", ())):

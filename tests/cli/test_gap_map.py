@@ -43,6 +43,11 @@ class GapMap(Case):
         entry, _ = self.check(source, "--gap-map", path, *options, code=code)
         mesh = meshio.read(path)
         self.assertEqual([block.type for block in mesh.cells], ["triangle"])
+        # The names, each with the number that its yarn has in the cell data.
+        names = [yarn["name"] for yarn in entry["yarns"]]
+        self.assertEqual(
+            {name: int(number[0]) for name, number in mesh.field_data.items()}, dict(zip(names, range(len(names))))
+        )
         triangles, gaps, yarns = mesh.cells[0].data, mesh.point_data["gap"], mesh.cell_data["yarn"][0]
         self.assertEqual(len(gaps), len(mesh.points))
         self.assertEqual(len(yarns), len(triangles))

@@ -91,6 +91,16 @@ class Triangles(Case):
                     total = sum(mesh.volume() for mesh in meshes["gltf"])
                     self.assertAlmostEqual(soup.volume() / total, 1, delta=1e-6)
 
+    def test_the_default_chord_is_a_hundredth_of_the_thinnest_section(self):
+        """Without --chord as with it, and a small part of the bytes of the tubes' tolerance, a thousandth."""
+        source = self.source(cylinder(diameter=0.4))
+        for options, name in (((), "own"), (("--chord", 0.004), "same"), (("--chord", 0.0004), "fine")):
+            self.succeeds("convert", source, *options, "-o", self.out / f"{name}.ply")
+        own, same, fine = (reader.ply(self.out / f"{name}.ply")[0][0] for name in ("own", "same", "fine"))
+        self.assertEqual((self.out / "own.ply").read_bytes(), (self.out / "same.ply").read_bytes())
+        self.assertLess(own.areas().size, 0.5 * fine.areas().size)
+        self.assertEqual(same.bad_edges(), 0)
+
     def test_all_formats_have_the_same_triangles(self):
         meshes, soup, _ = self.write(SAMPLES / "plain4_path.txt")
         self.assertEqual(len(meshes["obj"]), 4)

@@ -518,6 +518,45 @@ class ScaleBar(Base):
         self.assertEqual(self.picture(self.rod(4), size="60x40", bar=True), self.picture(self.rod(4), size="60x40"))
 
 
+class Meshes(Case):
+    """Decks and Gmsh meshes of a cloth are seen as the same mesh in VTU is."""
+
+    def test_decks_and_gmsh(self):
+        self.succeeds("mesh", PATH, "--to", "vtu,inp,msh", "-o", f"{self.out}/")
+        pictures = []
+        for ending in ("vtu", "inp", "msh"):
+            path = self.folder / f"{ending}.png"
+            self.succeeds("view", self.out / f"plain4_path.{ending}", "-o", path, "--size", "240x180")
+            pictures.append(path.read_bytes())
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertEqual(pictures[0], pictures[2])
+
+    def test_meshes_of_other_programs(self):
+        """Gmsh's version 2.2, a surface alone, and what cannot be shown."""
+        old = (
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+            "$Elements\n2\n1 15 2 0 1 1\n2 4 2 7 1 1 2 3 4\n$EndElements\n"
+        )
+        shell = "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n*Element, type=S4R\n1, 1, 2, 3, 4\n"
+        for name, text, said in (
+            ("old.msh", old, None),
+            ("shell.inp", shell, None),
+            ("binary.msh", old.replace("2.2 0 8", "4.1 1 8"), "this mesh is binary: save it as text"),
+            ("version.msh", old.replace("2.2 0 8", "4 0 8"), "the version 4 of Gmsh's format is not read"),
+            ("node.msh", old.replace("2 3 4\n$End", "2 3 9\n$End"), ":14:1: error: element 2 has the node 9"),
+            ("node.inp", shell.replace("1, 2, 3, 4\n", "1, 2, 3, 9\n"), ":7:1: error: element 1 has the node 9"),
+            ("beams.inp", shell.replace("S4R", "B31"), "no element that is a surface or a solid"),
+            ("split.inp", "*HEADING\n*INCLUDE, INPUT=a_mesh.inp\n", "this deck takes in 'a_mesh.inp': view that file"),
+        ):
+            with self.subTest(name):
+                path = self.folder / name
+                path.write_text(text)
+                if said is None:
+                    self.succeeds("view", path, "-o", self.folder / "seen.png", "--size", "80x60")
+                else:
+                    self.assertIn(said, self.fails(1, "view", path, "-o", self.folder / "seen.png"))
+
+
 class Files(Case):
     def test_several_inputs(self):
         self.succeeds("view", GRID, RING, "-o", self.out, "--size", "40x30")

@@ -194,7 +194,7 @@ std::vector<Target> all_targets() {
   for (Target& target : list) {
     // Files with several blocks of numbers, or in XML, are not that small.
     if (const std::string& name = target.name;
-        name == "frd" || name == "inp" || name == "vtu" || name == "tg3")
+        name == "frd" || name == "inp" || name == "msh" || name == "vtu" || name == "tg3")
       target.most = 2048;
     if (target.name == "step") {
       target.does = "reads, up to the hand-over to OpenCASCADE";

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "view/role_color.h"
+#include "yarn/role_color.h"
 
 namespace selvage::view::embree {
 
@@ -53,7 +53,7 @@ std::uint8_t encoded(float linear) {
 
 Paint paint_of(const yarn::Body& body, std::size_t number, const Skin& skin, double pixels_per_unit) {
   Paint paint;
-  paint.color = linear(body.has_own_color ? body.color : role_color(body.role, number));
+  paint.color = linear(body.has_own_color ? body.color : yarn::role_color(body.role, number));
   paint.end_color = mixed(paint.color, Light::Ones(), ends_toward_white);
   if (body.twist == 0.0) return paint;
   // Pixels between two stripes, across them.

@@ -14,7 +14,7 @@
 #include "core/xml_text.h"
 #include "view/color_scale.h"
 #include "view/page/sources.h"
-#include "view/role_color.h"
+#include "yarn/role_color.h"
 
 namespace selvage::view::page {
 
@@ -124,7 +124,7 @@ Json yarns_json(const Page& page, Binary& binary) {
     json["roles"].push_back(name_of(role));
     Json colors = Json::array();  // of every second yarn another one
     for (const std::size_t number : {std::size_t{0}, std::size_t{1}}) {
-      const yarn::Color color = role_color(role, number);
+      const yarn::Color color = yarn::role_color(role, number);
       colors.push_back({color.red, color.green, color.blue});
     }
     json["role_colors"].push_back(std::move(colors));
@@ -201,7 +201,8 @@ Json skin_json(const Skin& skin, Binary& binary) {
         {{"name", region.name},
          {"elements", region.elements},
          {"matrix", region.is_matrix},
-         {"color", json_of(region.is_matrix ? matrix_color : hue_color(json["regions"].size()))}});
+         {"color",
+          json_of(region.is_matrix ? yarn::matrix_color : yarn::hue_color(json["regions"].size()))}});
   for (const Skin::Field& field : skin.fields)
     json["fields"].push_back({{"name", field.name},
                               {"step", field.step},

@@ -37,7 +37,7 @@ class Machine:
         elif verb == "drop" or (verb == "knit" and len(rest) == 2):
             self.needles.pop(rest[-1], None)
         elif verb in ("knit", "tuck"):
-            needle, carrier = rest[1], rest[2]
+            needle, carrier = rest[1], " ".join(rest[2:])
             held = self.needles.setdefault(needle, [])
             loop = Loop(carrier, needle[0], self.place(needle), [])
             if verb == "knit":

@@ -62,7 +62,7 @@ class Random {
 };
 
 TEST(KnitoutRandom, ProgramsAreLaidOrRefused) {
-  int laid = 0;
+  int laid = 0, cut = 0;
   constexpr int programs = 3000;
   for (unsigned seed = 0; seed < programs; ++seed) {
     int loops = 0;
@@ -76,7 +76,17 @@ TEST(KnitoutRandom, ProgramsAreLaidOrRefused) {
     for (const std::string& row : knit.chart)
       made += static_cast<int>(
           std::count_if(row.begin(), row.end(), [](char c) { return c != 'M' && c != '.'; }));
-    ASSERT_EQ(made, loops) << text;
+    // Of a program whose end is not supported, what the warning says.
+    const std::string said = reading.text();
+    const std::size_t ends = said.find(" loops are built");
+    if (ends != std::string::npos) {
+      const std::size_t begins = said.rfind(": ", ends) + 2;
+      ASSERT_EQ(said.substr(begins, ends - begins), std::to_string(made) + " of " + std::to_string(loops))
+          << text;
+      ++cut;
+    } else {
+      ASSERT_EQ(made, loops) << text;
+    }
     Diagnostics diagnostics;
     fabric::BuildOptions options;
     options.as_published = true;
@@ -85,6 +95,7 @@ TEST(KnitoutRandom, ProgramsAreLaidOrRefused) {
     for (std::size_t i = 0; i < (*construction)->count(); ++i) ASSERT_TRUE((*construction)->plan(i).ok());
   }
   EXPECT_GT(laid, programs / 10);
+  EXPECT_GT(cut, programs / 10);
 }
 
 // Cut off anywhere, and with any byte made another one.

@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import re
 import sys
 import unittest
 
@@ -13,7 +14,7 @@ import numpy as np
 from cloth import Chart, Cloth, lines_of
 from oracle import Machine, named_links
 from program import Case, SAMPLES, run
-from programs import LAID, Program, cable, plain
+from programs import LAID, Program, cable, jacquard, plain, tube
 
 
 class KnitoutCase(Case):
@@ -73,6 +74,96 @@ class Topology(KnitoutCase):
                 entry = json.loads(report.read_text())["inputs"][0]
                 self.assertEqual((done.returncode, entry["overlaps"]), (0, []), done.stderr)
                 self.assertFalse(any(yarn["self_overlap"] for yarn in entry["yarns"]))
+
+
+# What lies before the last rows is a cloth; these are not supported: (program, operations behind it).
+ENDS = {
+    "tube closed by transfers": (tube(4, 2), [f"xfer b{i} f{i}" for i in range(1, 5)], "K" * 4),
+    "split": (plain(5, 3), [], "split"),
+    "loop moved over thirteen needles": (
+        plain(5, 3),
+        ["xfer f5 b5", "rack 13", "xfer b5 f18", "rack 0"],
+        " " * 17 + "K",
+    ),
+}
+
+
+class Beginnings(KnitoutCase):
+    def test_links_before_the_end(self):
+        """The cloth is that of the lines before the one that the warning names, by the oracle's machine."""
+        for name, (program, transfers, row) in ENDS.items():
+            with self.subTest(name):
+                program.lines += transfers
+                if row == "split":
+                    program.say("split", program.side["1"], "f5", "b5", "1")
+                    program.say("knit", program.side["1"], "f4", "1")
+                else:
+                    program.knit(2, row)
+                path = self.written(program)
+                done = self.succeeds("convert", path, "--to", "txt", "-o", "-")
+                line, built, made = (
+                    int(number)
+                    for number in re.search(
+                        r"the cloth ends before line (\d+): (\d+) of (\d+) loops", done.stderr
+                    ).groups()
+                )
+                before = Machine("\n".join(program.text().splitlines()[: line - 1]))
+                chart = Chart(done.stdout)
+                self.assertEqual(len(before.loops), built)
+                self.assertGreater(made, built)
+                self.assertEqual(chart.named_links(), named_links(before.loops))
+
+
+class Together(KnitoutCase):
+    def program(self, rows):
+        lines = [";!knitout-2", ";;Gauge: 10", ";;Carriers: 1 2,3;4", "inhook 1 2"]
+        for row, signs in enumerate(rows):
+            needles = [(f"{'f' if sign == 'K' else 'b'}{i + 1}") for i, sign in enumerate(signs)]
+            for needle in needles[:: 1 if row % 2 == 0 else -1]:
+                lines.append(f"knit {'+-'[row % 2]} {needle} 1 2")
+        return "\n".join(lines[:7] + ["releasehook 1 2"] + lines[7:] + ["outhook 1 2"]) + "\n"
+
+    def test_plating(self):
+        """A jersey of two carriers: both yarns of a course, apart, the first one on the face."""
+        path = self.written(self.program(["KKKK"] * 4))
+        done = self.succeeds("convert", path, "--to", "txt", "-o", "-")
+        self.assertNotIn("warning", done.stderr)
+        self.assertIn("  plating carrier_2\n", done.stdout)
+        lines = lines_of(self.succeeds("convert", path, "--to", "csv", "-o", "-", "--quiet").stdout)
+        self.assertEqual(len(lines), 8)
+        for course in range(1, 5):
+            face, back = lines[f"course_{course}"], lines[f"course_{course}_plating"]
+            self.assertGreater(face[:, 2].mean(), back[:, 2].mean())
+        self.succeeds("check", path, "--quiet")
+
+    def test_as_one_yarn(self):
+        """A rib of two carriers: one yarn with the area of both."""
+        text = self.program(["KPKP"] * 4)
+        done = self.succeeds("convert", self.written(text), "--to", "txt", "-o", "-")
+        self.assertIn("warning: carriers 1 2 are knitted together: they are built as one yarn", done.stderr)
+        chart = Chart(done.stdout)
+        self.assertEqual(chart.named_links(), named_links(Machine(text).loops))
+        wale = chart.wale
+        self.assertAlmostEqual(float(re.search(r"diameter (\S+)", done.stdout)[1]), wale / 6, delta=1e-9)
+        text = text.replace(";;Gauge: 10", ";;Gauge: 10\n;;Yarn-1: 0.3 mm\n;;Yarn-2: 0.4 mm")
+        done = self.succeeds("convert", self.written(text), "--to", "txt", "-o", "-")
+        self.assertAlmostEqual(float(re.search(r"diameter (\S+)", done.stdout)[1]), 0.5, delta=1e-12)
+
+
+class Warnings(KnitoutCase):
+    def test_each_carrier_has_a_color(self):
+        text = self.text_of(self.written(jacquard(["112112", "221221"])))
+        colors = re.findall(r"^thread carrier_\S+\n(?:  .*\n)*?  color (.+)$", text, re.MULTILINE)
+        self.assertEqual((len(colors), len(set(colors))), (2, 2))
+
+    def test_without_the_first_line(self):
+        """A program is one by its first operation, too, and not a deck of LS-DYNA."""
+        text = plain(4, 3).text()
+        for lines in (text.split("\n", 1)[1], "\n; a comment\nx-speed 5\n" + text.split("\n", 3)[3]):
+            for name in ("a.k", "a.knitout", "a"):
+                done = self.succeeds("convert", self.written(lines, name), "--to", "txt", "-o", "-")
+                self.assertIn("the first line of a knitout program is missing", done.stderr)
+                self.assertEqual(Chart(done.stdout).named_links(), named_links(Machine(text).loops))
 
 
 class Crossings(KnitoutCase):

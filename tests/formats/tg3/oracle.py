@@ -89,6 +89,16 @@ class Yarn:
         self.is_periodic = law.get("Periodic", "1") == "1"
         self.flat_nodes = law.get("ForceMasterNodeTangent", "0") == "1"
         self.sections = element.find("YarnSection")
+        self.shifts = []  # of the outline: of each span places along it, with vectors by the outline's parameter
+        if self.sections.get("type") == "CYarnSectionAdjusted":
+            self.shifts = [
+                [
+                    (float(at.get("T")), [(float(one.get("T")), numbers(one.get("Vector"))) for one in at])
+                    for at in span.findall("AdjustmentSection")
+                ]
+                for span in self.sections.findall("Adjustment")
+            ]
+            self.sections = self.sections.find("YarnSection")
         self.ts = self.parameters()
         self.derivatives = self.cubic() if self.form == "Cubic" else None
         spans = range(len(self.points) - 1)
@@ -107,7 +117,25 @@ class Yarn:
             elif len(points):
                 edges = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
                 ts.update((np.cumsum(edges) - edges) / edges.sum())
+        ts.update(t % 1 for span in self.shifts for _, around in span for t, _ in around)
         return np.array(sorted(ts))
+
+    def shift(self, span, t):
+        """Of the outline's points at a place of a span."""
+        if span >= len(self.shifts) or not self.shifts[span]:
+            return np.zeros((len(self.ts), 2))
+        rows = [
+            np.stack(
+                [np.interp(self.ts, [u for u, _ in around], [by[axis] for _, by in around]) for axis in range(2)], 1
+            )
+            for _, around in self.shifts[span]
+        ]
+        places = [place for place, _ in self.shifts[span]]
+        right = min(max(int(np.searchsorted(places, t)), 1), len(places) - 1) if len(places) > 1 else 0
+        if right == 0:
+            return rows[0]
+        share = np.clip((t - places[right - 1]) / (places[right] - places[right - 1]), 0, 1)
+        return rows[right - 1] + share * (rows[right] - rows[right - 1])
 
     def cubic(self):
         """Derivatives at the nodes of the spline with equal second derivatives on both sides of each node."""
@@ -198,7 +226,7 @@ class Yarn:
         side = np.cross(tangent, up)
         angle = self.angles[span] + t * (self.angles[span + 1] - self.angles[span])
         side = np.cos(angle) * side + np.sin(angle) * np.cross(up, side)
-        outline = self.outline(span, t)
+        outline = self.outline(span, t) + self.shift(span, t)
         return place + outline[:, :1] * side + outline[:, 1:] * up
 
     def at_nodes(self):

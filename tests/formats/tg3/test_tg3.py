@@ -3,6 +3,7 @@
 import json
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -242,6 +243,90 @@ class Tg3(Case):
                 self.assertIn(f"the file has {size >> 20} MB", said)
                 self.assertIn("save it without what TexGen computes", said)
             path.unlink()
+
+    def test_adjusted_sections_have_the_volumes_of_the_oracle(self):
+        """Outlines that are shifted, more and more along the first span, and less and less along the second one."""
+        shift = '<AdjustmentPerimeter T="{}" Vector="{},{}"/>'
+
+        def span(*places):
+            return "".join(
+                f'<AdjustmentSection T="{t}">'
+                + "".join(
+                    shift.format(u, x * by, y * by)
+                    for u, x, y in ((0, 0.2, 0), (0.3, 0, 0.3), (0.7, -0.1, 0), (1, 0.2, 0))
+                )
+                + "</AdjustmentSection>"
+                for t, by in places
+            )
+
+        first, second = span((0, 0), (0.5, 0.2), (1, 1)), span((0.3, 1), (0.9, 0))
+        for section in (ELLIPSE, LENS, BOX):
+            adjusted = (
+                f'<Adjustment index="0">{first}</Adjustment><Adjustment index="1">{second}</Adjustment>'
+                f'<YarnSection type="CYarnSectionConstant">{section}</YarnSection>'
+            )
+            text = model(adjusted, attributes='type="CYarnSectionAdjusted"')
+            with self.subTest(section):
+                plain = self.yarns(model(section))[0]["volume"]
+                expected = Model(self.file(text)).yarns[0].volume()
+                self.assertGreater(abs(expected / plain - 1), 0.01)
+                self.assertAlmostEqual(self.yarns(text)[0]["volume"] / expected, 1, delta=5e-4)
+
+    def test_equal_points_of_a_polygon_are_left_out(self):
+        corners = ["1,-0.5", "1,0.5", "1,0.5", "1,0.5", "-1,0.5", "-1,-0.5"]
+        rows = "".join(f'<PolygonPoint value="{corner}"/>' for corner in corners)
+        text = model(f'<Section type="CSectionPolygon">{rows}</Section>', height=0)
+        self.assertAlmostEqual(self.yarns(text)[0]["volume"], 20, delta=1e-9)
+        self.assertIn(
+            "warning: 2 of the 6 points of this polygon equal the point before them",
+            self.succeeds("info", self.file(text)).stderr,
+        )
+
+    def test_up_along_the_line_is_taken_across_it(self):
+        """A vertical yarn, with and without `Up`, and one that turns from x to z: its sections do not turn about it."""
+        upright = model(ELLIPSE, "Linear").replace("5,0,2", "0,0,5").replace("10,0,0", "0,0,10", 1)
+        upright = upright.replace('Position="10,0,0"', 'Position="0,0,10"').replace('value="0,0,10"', 'value="10,0,0"')
+        for text in (upright, upright.replace('0,0,1"', '0,0,0"')):
+            yarn = self.yarns(text)[0]
+            self.assertAlmostEqual(yarn["volume"], 10 * math.pi / 2, delta=1e-5)
+            self.assertIn("lies along the line at 3 of the 3 nodes", self.succeeds("info", self.file(text)).stderr)
+        bent = (
+            model(ELLIPSE, "Bezier")
+            .replace('Periodic="1"', 'Periodic="0"')
+            .replace('Position="10,0,0"', 'Position="5,0,12" Tangent="0,0,1"')
+        )
+        good = bent.replace('Tangent="0,0,1" Up="0,0,1"', 'Tangent="0,0,1" Up="-1,0,0"')
+        self.assertIn("at 1 of the 3 nodes", self.succeeds("info", self.file(bent)).stderr)
+        self.assertAlmostEqual(self.yarns(bent)[0]["volume"] / self.yarns(good)[0]["volume"], 1, delta=1e-2)
+
+    def test_a_domain_without_volume_is_left_out(self):
+        text = model(ELLIPSE, domain=DOMAIN.replace('"-1,0,0" d="-20"', '"-1,0,0" d="20"'))
+        self.assertEqual(len(self.yarns(text)), 1)
+        self.assertIn(
+            "warning: the planes of this domain enclose no volume", self.succeeds("info", self.file(text)).stderr
+        )
+
+    def test_measured_sections_are_fitted(self):
+        """Polygons whose corners stand at different places: less than half of the points, and the oracle's volume."""
+        sections = ""
+        for k in range(24):
+            turns = [2 * math.pi * (i + 0.3 * math.sin(7 * i + 3 * k)) / 40 for i in range(40)]
+            rows = "".join(
+                f'<PolygonPoint value="{1.2 * math.cos(a):.6f},{0.4 * math.sin(a):.6f}"/>' for a in sorted(turns)
+            )
+            sections += (
+                f'<PositionSection t="{k / 24}"><Section type="CSectionPolygon">{rows}</Section></PositionSection>'
+            )
+        text = model(sections, attributes='type="CYarnSectionInterpPosition" Ramped="0" Polar="0"')
+        path = self.file(text)
+        done = self.succeeds("info", "--json", path, "-v")
+        found = re.search(
+            r"fitted to within (\S+) mm of their sections, with (\d+) control points instead of (\d+)", done.stderr
+        )
+        self.assertLess(float(found[1]), 1e-3 * 0.8)
+        self.assertLess(int(found[2]), int(found[3]) / 2)
+        volume = json.loads(done.stdout)["inputs"][0]["yarns"][0]["volume"]
+        self.assertAlmostEqual(volume / Model(path).yarns[0].volume(), 1, delta=1e-3)
 
     def test_bad_input(self):
         whole = model(ELLIPSE)

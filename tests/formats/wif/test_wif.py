@@ -113,6 +113,16 @@ class Reading(WifCase):
         path.write_text("\n".join(lines))
         return path
 
+    def test_the_tie_up_of_the_whole_loom(self):
+        """Treadles and shafts beyond those that [WEAVING] counts, which no pick and no end needs."""
+        path = self.changed("fiberworks_rosepath.wif", [("[TIEUP]", "[TIEUP]\n41=1,2\n42=1,40")])
+        self.agrees(path)
+        messages = run("convert", path, "--to", "txt", "-o", "-").stderr
+        self.assertRegex(
+            messages, r"warning: \[TIEUP\] has treadle 41 \(and 1 more\), and \[WEAVING\] says \d+ treadles"
+        )
+        self.assertRegex(messages, r"warning: \[TIEUP\] has shaft 40, and \[WEAVING\] says \d+ shafts")
+
     def test_colors_that_nobody_takes(self):
         """A default beyond the table, where every thread has a colour of its own."""
         for system in ("WARP", "WEFT"):
@@ -300,7 +310,7 @@ class BadSamples(Case):
     def test_each_is_refused_at_its_place(self):
         expected = {
             "wif_no_tieup.wif": "25:1: error: [TREADLING] needs [TIEUP], which is missing",
-            "wif_shaft_beyond.wif": "27:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
+            "wif_shaft_beyond.wif": "21:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
             "wif_treadle_beyond.wif": "33:3: error: treadle 9 is beyond the 4 treadles of [WEAVING]",
         }
         self.assertEqual(sorted(path.name for path in BAD.glob("*.wif")), sorted(expected))

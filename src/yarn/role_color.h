@@ -5,14 +5,14 @@
 
 #include "yarn/body.h"
 
-namespace selvage::view {
+namespace selvage::yarn {
 
 // Of the yarn of this number among those that are shown: every second one is a little lighter, so that
 // neighbours can be told apart.
-yarn::Color role_color(yarn::Role role, std::size_t number);
+Color role_color(Role role, std::size_t number);
 
 // Of regions of meshes, one by one: hues a golden section of the circle apart; and of the matrix.
-yarn::Color hue_color(std::size_t index);
-inline constexpr yarn::Color matrix_color{196, 199, 198};
+Color hue_color(std::size_t index);
+inline constexpr Color matrix_color{196, 199, 198};
 
-}  // namespace selvage::view
+}  // namespace selvage::yarn

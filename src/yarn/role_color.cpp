@@ -1,14 +1,14 @@
-#include "view/role_color.h"
+#include "yarn/role_color.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace selvage::view {
+namespace selvage::yarn {
 
 namespace {
 
-yarn::Color color_of(yarn::Role role) {
-  using enum yarn::Role;
+Color color_of(Role role) {
+  using enum Role;
   switch (role) {
     case warp:
       return {46, 98, 150};
@@ -32,7 +32,7 @@ yarn::Color color_of(yarn::Role role) {
 
 }  // namespace
 
-yarn::Color hue_color(std::size_t index) {
+Color hue_color(std::size_t index) {
   constexpr double saturation = 0.42, lightness = 0.48, golden = 0.618034, first = 0.55;
   const double turn = std::fmod(first + golden * static_cast<double>(index), 1.0);
   const auto channel = [&](double place) {
@@ -44,11 +44,11 @@ yarn::Color hue_color(std::size_t index) {
   return {channel(0), channel(8), channel(4)};
 }
 
-yarn::Color role_color(yarn::Role role, std::size_t number) {
+Color role_color(Role role, std::size_t number) {
   const double shade = number % 2 == 0 ? 1.0 : 1.14;
   const auto shaded = [&](int part) { return std::min(255, static_cast<int>(std::lround(shade * part))); };
-  const yarn::Color color = color_of(role);
+  const Color color = color_of(role);
   return {shaded(color.red), shaded(color.green), shaded(color.blue)};
 }
 
-}  // namespace selvage::view
+}  // namespace selvage::yarn
