@@ -47,14 +47,20 @@ int Parser::next_in_block(Block& block) {
       unwinding_ = false;
       return row_step;
     }
-    const std::string_view word = peek_word();
+    std::string_view word = peek_word();
     int step = find_word(block.table->words, word);
+    const bool is_in_front = step >= 0;
+    if (!is_in_front && block.table->word_of_line != nullptr) {
+      const std::string_view meant = block.table->word_of_line(peek_rest());
+      step = find_word(block.table->words, meant);
+      if (step >= 0) word = meant;
+    }
     if (step < 0) step = same_word(word, "end") ? static_cast<int>(end_step) : unknown_word(block, word);
     if (step >= 0) step = note_given(block, step, word);
     if (step == missing_end_step) return missing_end(block);
     if (step == skip_step) continue;
     unwinding_ = false;
-    take_word();
+    if (is_in_front || step < 0) take_word();
     if (step >= 0) return step;
     if (close(block) == end_step) return end_step;
   }
