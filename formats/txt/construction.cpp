@@ -38,7 +38,8 @@ std::optional<double> read_pitch(Parser& p) {
                          word.find('(') != std::string_view::npos;
   if (!is_number || same_word(word, "pitch")) p.expect("pitch");
   const std::string_view text = without_open(p.peek_rest());
-  const std::optional<std::string> own = p.has_failed() ? std::nullopt : pitch_in_own_form(text);
+  const std::optional<std::string> own =
+      p.has_failed() ? std::nullopt : pitch_in_own_form(with_plain_blanks(text));
   if (!own) return p.positive("the pitch", Measure::pitch);
   p.take_bytes(text.size());
   const std::optional<Result<double>> value = p.scope().value(*own, Measure::pitch);
@@ -49,7 +50,8 @@ std::optional<double> read_pitch(Parser& p) {
 
 // The number of yarns that is missing in front of a pitch: `warp cotton 24/cm`. `noun`: "ends".
 bool lacks_count(Parser& p, std::string_view noun) {
-  const std::string_view text = without_open(p.peek_rest());
+  const std::string plain = with_plain_blanks(p.peek_rest());
+  const std::string_view text = without_open(plain);
   const std::size_t blank = text.find_last_of(" \t");
   const std::string_view front = blank == std::string_view::npos ? text : trimmed(text.substr(0, blank));
   const auto is_pitch = [&](std::string_view part) {

@@ -322,6 +322,7 @@ Result<YarnCount> read_yarn_count(std::string_view text, System system, Scope& s
 bool is_count_notation(std::string_view text, const Scope& scope) {
   if (text.empty() || read_number(text) || text.find(',') != std::string_view::npos) return false;
   if (is_digit(text.front()) || text.front() == '.' || text.front() == '(') return true;
+  if (!system_of_count(text).empty()) return true;
   const std::vector<std::string_view> params = scope.names();
   const std::string_view word = text.substr(0, text.find_first_of(" \t/*+-^("));
   if (std::find(params.begin(), params.end(), word) != params.end()) return word.size() < text.size();

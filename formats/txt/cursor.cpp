@@ -65,6 +65,17 @@ bool is_number(std::string_view word) {
 
 }  // namespace
 
+std::string with_plain_blanks(std::string_view text) {
+  std::string plain;
+  const char* const end = text.data() + text.size();
+  for (const char* p = text.data(); p != end;) {
+    const std::size_t blank = blank_at(p, end);
+    plain += blank > 0 ? ' ' : *p;
+    p += std::max<std::size_t>(blank, 1);
+  }
+  return plain;
+}
+
 Cursor::Cursor(const Source& source, TextReport& report) : report_(report) {
   std::string_view bytes = source.bytes();
   begin_ = bytes.data();

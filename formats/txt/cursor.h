@@ -4,6 +4,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/source.h"
@@ -11,6 +12,9 @@
 #include "formats/txt/scope.h"
 
 namespace selvage::formats::txt {
+
+// The same with no-break and thin spaces as blanks.
+std::string with_plain_blanks(std::string_view text);
 
 class Cursor {
  public:

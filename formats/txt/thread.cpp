@@ -30,7 +30,7 @@ void read_count_notation(Parser& p, Thread& thread, std::string_view word) {
   const auto text = p.rest_of(fmt::format("the linear density ({})", word));
   if (!text) return;
   const Spot spot = p.last();
-  const Result<YarnCount> count = read_yarn_count(*text, system_of(word), p.scope());
+  const Result<YarnCount> count = read_yarn_count(with_plain_blanks(*text), system_of(word), p.scope());
   if (!count) return p.error(spot, count.error().text);
   p.check(fabric::linear_density_quantity, count->whole.tex());
   if (!p.finish()) return;

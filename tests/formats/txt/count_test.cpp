@@ -82,9 +82,7 @@ TEST(YarnCount, ExpressionsNeedBrackets) {
   EXPECT_NEAR(tex_of("dtex count f48", "param count 167\n"), 16.7, 1e-12);
   for (const std::string text : {"dtex 1400*2", "dtex 100+67", "tex 20.5/2.5"})
     EXPECT_NE(messages_of(text).find("needs brackets"), std::string::npos) << messages_of(text);
-  EXPECT_NE(messages_of("dtex count/2", "param count 167\n").find("write (count/2)") != std::string::npos ||
-                messages_of("dtex count/2", "param count 167\n").find("needs brackets: (count/2)") != std::string::npos,
-            false);
+  EXPECT_NE(messages_of("dtex count/2", "param count 167\n").find("needs brackets: (count/2)"), std::string::npos);
 }
 
 TEST(YarnCount, SaysWhatIsWrong) {
