@@ -44,7 +44,8 @@ std::optional<double> read_pitch(Parser& p) {
   p.take_bytes(text.size());
   const std::optional<Result<double>> value = p.scope().value(*own, Measure::pitch);
   if (value && value->ok()) return **value;
-  p.error(p.last(), fmt::format("the pitch: {}", value ? value->error().text : in_quotes(text) + " is not a number"));
+  p.error(p.last(),
+          fmt::format("the pitch: {}", value ? value->error().text : in_quotes(text) + " is not a number"));
   return std::nullopt;
 }
 
@@ -56,16 +57,16 @@ bool lacks_count(Parser& p, std::string_view noun) {
   const std::string_view front = blank == std::string_view::npos ? text : trimmed(text.substr(0, blank));
   const auto is_pitch = [&](std::string_view part) {
     return !part.empty() && part.front() >= '0' && part.front() <= '9' &&
-           (pitch_in_own_form(part) ||
-            (part.find_first_of(" \t") == std::string_view::npos &&
-             (p.scope().is_count(part) || p.scope().is_length(part))));
+           (pitch_in_own_form(part) || (part.find_first_of(" \t") == std::string_view::npos &&
+                                        (p.scope().is_count(part) || p.scope().is_length(part))));
   };
   if (is_pitch(text)) {
-    p.error(p.here(), fmt::format("the number of {} is missing in front of the pitch: write '8 {}' for 8 {}", noun, text,
-                                  noun));
+    p.error(p.here(), fmt::format("the number of {} is missing in front of the pitch: write '8 {}' for 8 {}",
+                                  noun, text, noun));
   } else if (const std::string_view behind = text.substr(std::min(text.size(), front.size()));
              is_pitch(front) && trimmed(behind).find_first_not_of("0123456789") == std::string_view::npos) {
-    p.error(p.here(), fmt::format("the number of {} is in front of the pitch: write '{} {}'", noun, trimmed(behind), front));
+    p.error(p.here(), fmt::format("the number of {} is in front of the pitch: write '{} {}'", noun,
+                                  trimmed(behind), front));
   } else {
     return false;
   }
@@ -193,9 +194,10 @@ void read_draft_numbers(Parser& p, Draft& draft) {
   if (is_twill && p.more()) draft.hand = p.choice("direction of the twill", hand_words).value_or(Hand::z);
   if (is_satin && p.more()) draft.warp_faced = p.choice("face of the satin", face_words).value_or(false);
   if (draft.form == Draft::Form::basket && draft.a != draft.b)
-    p.report.note(spot, fmt::format("basket {0}/{1}: groups of {0} and of {1} in turn, both ways; {0} ends x {1} "
-                                    "picks as one, as an Oxford has them, are `basket {0}x{1}`",
-                                    draft.a, draft.b));
+    p.report.note(spot,
+                  fmt::format("basket {0}/{1}: groups of {0} and of {1} in turn, both ways; {0} ends x {1} "
+                              "picks as one, as an Oxford has them, are `basket {0}x{1}`",
+                              draft.a, draft.b));
   // What cannot be is told where it stands.
   const long long shafts = std::accumulate(numbers->begin(), numbers->end(), 0LL);
   if (p.finish() && shafts <= most_shafts_checked)
@@ -432,7 +434,7 @@ void read_transfer(Parser& p, Knit& knit, std::string_view) {
   fabric::LoopMove move;
   if (!read_moved_loop(p, move)) return p.skip_statement();
   const auto side = p.choice("side", side_words);
-  const auto wales = p.count("wales", 0);
+  const auto wales = p.count("the number of wales", 0);
   if (!p.finish()) return;
   move.right = *side * *wales;
   knit.moves.push_back(move);
@@ -685,10 +687,11 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   const bool has_form = p.more();
   const bool is_spacer = same_word(p.peek_word(), "spacer");
   if (is_spacer) {
-    p.report.error(p.here(),
-                   "a spacer is not built as one; two faces with yarns between them are a chart of K, P, T and U with "
-                   "'gating opposite D', D their distance: see 'selvage explain gating'",
-                   Kind::unsupported);
+    p.report.error(
+        p.here(),
+        "a spacer is not built as one; two faces with yarns between them are a chart of K, P, T and U with "
+        "'gating opposite D', D their distance: see 'selvage explain gating'",
+        Kind::unsupported);
     p.take_bytes(p.peek_rest().size());
     return p.skip_statement();
   }

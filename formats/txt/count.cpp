@@ -55,7 +55,7 @@ Message wrong_count(std::string_view text, std::string_view what) {
 struct Token {
   enum class Kind { number, word, sign, end } kind = Kind::end;
   std::string_view text;
-  double value = 0;           // of a number
+  double value = 0;            // of a number
   bool is_expression = false;  // a param, or an expression in brackets
 };
 
@@ -167,7 +167,7 @@ class Reading {
     }
     if (role == Role::none)
       return wrong_count(text_, fmt::format("{} has to be joined to what is before it, by '/', 'x' or 'f'",
-                                      in_quotes(token.text)));
+                                            in_quotes(token.text)));
     if (role == Role::slash && (base_is_expression_ || (token.is_expression && token.text.front() != '(')))
       return needs_brackets();
     const bool is_indirect_pair = role == Role::slash && is_indirect(system_);
@@ -205,7 +205,7 @@ class Reading {
     if (const auto system = system_named(word)) {
       if (*system == system_) return {};
       return wrong_count(text_, fmt::format("{} is another system than {}", in_quotes(word),
-                                      word_of(density_words, system_)));
+                                            word_of(density_words, system_)));
     }
     if (same_word(word, "Z") || same_word(word, "S"))
       return wrong_count(text_, "twist has a statement of its own: twist 660 Z");
@@ -244,17 +244,17 @@ class Reading {
       count.understood = with_system(whole);
     if (range_) count.understood += fmt::format(", the middle of a raw silk's range {}", *range_);
     if (filaments_)
-      count.understood += fmt::format(", {} {}{}", count.filaments,
-                                      count.filaments == 1 ? "filament" : "filaments",
-                                      count.plies > 1 ? " each" : "");
+      count.understood +=
+          fmt::format(", {} {}{}", count.filaments, count.filaments == 1 ? "filament" : "filaments",
+                      count.plies > 1 ? " each" : "");
     if (count.plies > 1) count.understood += fmt::format("; {} in all", with_system(whole));
     return count;
   }
 
   // `2x1400` has its plies in front.
   double product_of_plies() {
-    if (plies_.size() == 1 && slashed_.empty() && *base_ <= max_plies_of_count && *base_ == std::floor(*base_) &&
-        plies_.front() > max_plies_of_count)
+    if (plies_.size() == 1 && slashed_.empty() && *base_ <= max_plies_of_count &&
+        *base_ == std::floor(*base_) && plies_.front() > max_plies_of_count)
       std::swap(*base_, plies_.front());
     double plies = 1;
     for (const double more : plies_) plies *= more;
@@ -294,7 +294,7 @@ class Reading {
         plies *= number;
       } else if (filaments_) {
         return wrong_count(text_, fmt::format("{} and {} both are numbers of filaments; write plies as x{}",
-                                        *filaments_, number, number));
+                                              *filaments_, number, number));
       } else {
         filaments_ = number;
       }
@@ -330,7 +330,8 @@ bool is_count_notation(std::string_view text, const Scope& scope) {
 }
 
 std::string_view system_of_count(std::string_view line) {
-  const bool is_resultant = line.size() > 1 && lower(line.front()) == 'r' && (line[1] == ' ' || is_digit(line[1]));
+  const bool is_resultant =
+      line.size() > 1 && lower(line.front()) == 'r' && (line[1] == ' ' || is_digit(line[1]));
   const bool begins_with_number = !line.empty() && is_digit(line.front());
   bool has_number = false;
   for (std::size_t i = 0; i < line.size();) {
@@ -342,7 +343,8 @@ std::string_view system_of_count(std::string_view line) {
     std::size_t stop = i;
     while (stop < line.size() && is_letter(line[stop])) ++stop;
     const auto system = system_named(line.substr(i, stop - i));
-    const bool is_glued = i == 0 && stop < line.size() && (is_digit(line[stop]) || (line[stop] == ' ' && stop > 1));
+    const bool is_glued =
+        i == 0 && stop < line.size() && (is_digit(line[stop]) || (line[stop] == ' ' && stop > 1));
     if (system && (begins_with_number || is_resultant || is_glued)) return word_of(density_words, *system);
     if (!begins_with_number && !is_resultant) return {};
     i = stop;

@@ -25,7 +25,8 @@ std::size_t blank_at(const char* p, const char* end) {
   if (p == end) return 0;
   if (is_blank(*p)) return 1;
   if (static_cast<unsigned char>(*p) < 0x80) return 0;
-  constexpr std::string_view wide[] = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x87", "\xE2\x80\x89", "\xE3\x80\x80"};
+  constexpr std::string_view wide[] = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x87", "\xE2\x80\x89",
+                                       "\xE3\x80\x80"};
   const std::string_view rest(p, static_cast<std::size_t>(end - p));
   for (const std::string_view space : wide)
     if (rest.starts_with(space)) return space.size();
@@ -38,7 +39,8 @@ std::size_t quote_at(const char* p, const char* end) {
   if (p == end) return 0;
   if (*p == '"') return 1;
   if (static_cast<unsigned char>(*p) < 0x80) return 0;
-  constexpr std::string_view curly[] = {"\xE2\x80\x9C", "\xE2\x80\x9D", "\xE2\x80\x9E", "\xC2\xAB", "\xC2\xBB"};
+  constexpr std::string_view curly[] = {"\xE2\x80\x9C", "\xE2\x80\x9D", "\xE2\x80\x9E", "\xC2\xAB",
+                                        "\xC2\xBB"};
   const std::string_view rest(p, static_cast<std::size_t>(end - p));
   for (const std::string_view quote : curly)
     if (rest.starts_with(quote)) return quote.size();
@@ -412,8 +414,9 @@ std::optional<double> Cursor::with_unit_behind(double value, std::string_view wh
   take_word();
   const double size = scope_.size_of(*unit);
   if (bare_lengths_ > 0 && measure == Measure::length && size != 1.0)
-    return fail(spot, fmt::format("{}: every number of this line needs its own unit right behind it, as in {}{}", what,
-                                  number_text(value), word));
+    return fail(spot,
+                fmt::format("{}: every number of this line needs its own unit right behind it, as in {}{}",
+                            what, number_text(value), word));
   return size < 1.0 ? value / (1.0 / size) : value * size;
 }
 

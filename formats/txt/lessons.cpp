@@ -62,21 +62,26 @@ constexpr std::array lessons = {
         "cell repeat 2 x 1", "length"},
 
     // --- thread
-    Lesson{"tex", "thread yarn", "tex V", "Linear density, g/km, written as dtex is; it sizes a circle with density and packing.",
+    Lesson{"tex", "thread yarn", "tex V",
+           "Linear density, g/km, written as dtex is; it sizes a circle with density and packing.",
            "tex 29.5"},
     Lesson{"dtex", "thread yarn", "dtex V[/N][ fN][ xN]",
-           "Linear density, g/10 km, of a single yarn; behind / a number above 9 is that of filaments, any other one "
+           "Linear density, g/10 km, of a single yarn; behind / a number above 9 is that of filaments, any "
+           "other one "
            "that of plies, which multiply it. With `plies` alone it is that of the whole yarn.",
            "dtex 167 f48 x2"},
     Lesson{"denier", "thread yarn", "denier V[/N][ fN][ xN]",
-           "Linear density, g/9 km, written as dtex is; `denier 20/22` is a raw silk's range.", "denier 150/48"},
+           "Linear density, g/9 km, written as dtex is; `denier 20/22` is a raw silk's range.",
+           "denier 150/48"},
     Lesson{"Td", "thread yarn", "Td V", "Linear density, g/9 km: another word for denier.", "Td 150"},
     Lesson{"Nm", "thread yarn", "Nm V[/N]",
-           "Metric count, km/kg, of a single yarn; of two numbers the smaller one is that of plies, which divide it. "
+           "Metric count, km/kg, of a single yarn; of two numbers the smaller one is that of plies, which "
+           "divide it. "
            "With `plies` alone it is that of the whole yarn.",
            "Nm 2/60"},
     Lesson{"Ne", "thread yarn", "Ne V[/N]",
-           "English cotton count, hanks of 840 yards a pound, of a single yarn; of two numbers the smaller one is that "
+           "English cotton count, hanks of 840 yards a pound, of a single yarn; of two numbers the smaller "
+           "one is that "
            "of plies, which divide it. With `plies` alone it is that of the whole yarn.",
            "Ne 30/2"},
     Lesson{"density", "thread yarn material", "density V", "Density of the fibre.", "density 1.52", "density",
@@ -93,14 +98,17 @@ constexpr std::array lessons = {
            "The yarn's cross-section: W across, H thick.", "section ellipse 0.8 0.2", "length", "circle"},
     Lesson{"twist", "thread yarn", "twist TURNS Z | S [rotate]",
            "Turns, 0 or more, and their direction: it marks the fibres.", "twist 600 Z", "twist"},
-    Lesson{"plies", "thread yarn", "plies N TURNS Z | S", "A ply yarn of N single yarns, with its ply twist; the count is that of the whole yarn.",
+    Lesson{"plies", "thread yarn", "plies N TURNS Z | S",
+           "A ply yarn of N single yarns, with its ply twist; the count is that of the whole yarn.",
            "plies 2 400 S", "twist"},
     Lesson{"filaments", "thread yarn", "filaments N",
-           "Filaments of each single yarn: each becomes a yarn of its own, up to 300; more with --detail filaments.",
+           "Filaments of each single yarn: each becomes a yarn of its own, up to 300; more with --detail "
+           "filaments.",
            "filaments 19"},
     Lesson{"color", "thread yarn", "color R G B | #RRGGBB | #RGB | NAME",
            "0 to 255 each, or a name of CSS; `indigo` is a denim's.", "color navy"},
-    Lesson{"colour", "thread yarn", "colour R G B | #RRGGBB | #RGB | NAME", "Another word for color.", "colour navy"},
+    Lesson{"colour", "thread yarn", "colour R G B | #RRGGBB | #RGB | NAME", "Another word for color.",
+           "colour navy"},
     Lesson{"material", "thread yarn", "material NAME", "A `material` block, or a fibre of the trade.",
            "material cotton"},
 
@@ -183,17 +191,21 @@ constexpr std::array lessons = {
 
     // --- weave
     Lesson{"warp", "weave", "warp THREADS N [pitch] P [open]",
-           "The warps: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than 20 times "
+           "The warps: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than "
+           "20 times "
            "their width.",
            "warp cotton 8 24/cm", "pitch"},
     Lesson{"weft", "weave", "weft THREADS N [pitch] P [open]",
-           "The wefts: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than 20 times "
+           "The wefts: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than "
+           "20 times "
            "their width.",
            "weft cotton 8 pitch 0.4", "pitch"},
-    Lesson{"fill", "weave", "fill THREADS N [pitch] P [open]", "Another word for weft.", "fill cotton 8 60 ppi", "pitch"},
+    Lesson{"fill", "weave", "fill THREADS N [pitch] P [open]", "Another word for weft.",
+           "fill cotton 8 60 ppi", "pitch"},
     Lesson{
         "draft", "weave",
-        "draft plain | twill A/B[/...] [Z | S] | satin N[/STEP] [weft-faced | warp-faced] | basket ENDSxPICKS | "
+        "draft plain | twill A/B[/...] [Z | S] | satin N[/STEP] [weft-faced | warp-faced] | basket "
+        "ENDSxPICKS | "
         "basket A/B | oxford | drill | 5HS | leno "
         "[half | full] | file NAME",
         "Which yarn is on top; without a word a block of rows of 0 and 1 (1: warp on top) that `end` closes.",

@@ -121,8 +121,9 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
   if (block.outer != nullptr) known.emplace_back("end");
   const std::string_view near = near_word(word, known);
   if (block.table->word_of_line != nullptr && word.front() >= '0' && word.front() <= '9') {
-    error(statement(), fmt::format("a yarn count begins with its system, tex, dtex, denier, Nm or Ne: write 'dtex {}'",
-                                   shortened(peek_rest())));
+    error(statement(),
+          fmt::format("a yarn count begins with its system, tex, dtex, denier, Nm or Ne: write 'dtex {}'",
+                      shortened(peek_rest())));
     skip_statement();
     return skip_step;
   }
@@ -241,7 +242,8 @@ std::optional<std::vector<int>> Parser::counts(std::string_view what, char sign)
   const Spot spot = here();
   const std::string_view word = take_word();
   if (word.empty())
-    return fail(spot, fmt::format("{} is missing: whole numbers joined by '{}', as in 2{}1", what, sign, sign));
+    return fail(spot,
+                fmt::format("{} is missing: whole numbers joined by '{}', as in 2{}1", what, sign, sign));
   std::vector<int> values;
   constexpr std::size_t most = 1000;
   for (const std::string_view part : split(word, sign)) {

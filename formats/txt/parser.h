@@ -158,8 +158,8 @@ class Parser : public Cursor {
 
   TextReport& report;
   std::unordered_map<int, PitchText> pitches;  // of the systems of weaves, by their lines
-  CountParts counted;  // of the thread or yarn at hand
-  std::span<const fabric::Setting> settings;  // of params, from outside
+  CountParts counted;                          // of the thread or yarn at hand
+  std::span<const fabric::Setting> settings;   // of params, from outside
   fabric::Fabric fabric;
   Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"},
       blocks{"block"};

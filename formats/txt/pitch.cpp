@@ -13,15 +13,16 @@ namespace selvage::formats::txt {
 namespace {
 
 constexpr std::array<std::string_view, 6> lengths = {"mm", "cm", "dm", "m", "in", "inch"};
-constexpr std::array<std::string_view, 14> nouns = {"ends",    "end",   "picks", "pick",  "threads",
-                                                     "thread",  "yarns", "wales", "wale",  "courses",
-                                                     "course",  "stitches", "st", "needles"};
+constexpr std::array<std::string_view, 14> nouns = {"ends",   "end",      "picks", "pick",   "threads",
+                                                    "thread", "yarns",    "wales", "wale",   "courses",
+                                                    "course", "stitches", "st",    "needles"};
 // By their last letter: i an inch, c a centimetre.
 constexpr std::array<std::string_view, 12> short_forms = {"epi", "ppi", "wpi",  "cpi",  "tpi",  "epc",
                                                           "ppc", "wpc", "epcm", "ppcm", "cpcm", "wpcm"};
 
 bool is_one_of(std::string_view word, const auto& words) {
-  return std::any_of(words.begin(), words.end(), [&](std::string_view known) { return same_word(known, word); });
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view known) { return same_word(known, word); });
 }
 
 // The number, name or bracketed expression in front.
@@ -73,14 +74,16 @@ std::optional<std::string> pitch_in_own_form(std::string_view text) {
   }
   rest = trimmed(rest);
   const std::size_t times = value_in_front(rest);  // per 10 cm
-  std::string made = value + "/" + std::string(times > 0 && !starts_name(rest.front()) ? rest.substr(0, times) : "");
+  std::string made =
+      value + "/" + std::string(times > 0 && !starts_name(rest.front()) ? rest.substr(0, times) : "");
   if (times > 0 && !starts_name(rest.front())) rest.remove_prefix(times);
   word = taken_word(rest);
   if (!trimmed(rest).empty() || !is_one_of(word, lengths)) return std::nullopt;
   return made + std::string(word);
 }
 
-double width_of_threads(std::span<const fabric::Fabric* const> inside, const std::vector<std::string>& names) {
+double width_of_threads(std::span<const fabric::Fabric* const> inside,
+                        const std::vector<std::string>& names) {
   double width = 0;
   for (const std::string& name : names) {
     const fabric::Thread* found = nullptr;

@@ -49,10 +49,12 @@ std::optional<double> value_of_setting(Parser& p, const fabric::Setting& setting
   const auto high = low ? read_number(text.substr(dash + 1)) : std::nullopt;
   if (high && *high > *low) {
     constexpr double steps = 3;
-    p.error(spot, fmt::format("--set {0}={1}: a difference, {2}; 'selvage sweep' takes a range as {0}={3}:{4}:{5} (from, "
-                              "to, step), and a difference is written ({1})",
-                              setting.name, text, number_text(*low - *high), number_text(*low), number_text(*high),
-                              number_text((*high - *low) / steps)));
+    p.error(spot,
+            fmt::format(
+                "--set {0}={1}: a difference, {2}; 'selvage sweep' takes a range as {0}={3}:{4}:{5} (from, "
+                "to, step), and a difference is written ({1})",
+                setting.name, text, number_text(*low - *high), number_text(*low), number_text(*high),
+                number_text((*high - *low) / steps)));
     return std::nullopt;
   }
   std::optional<Result<double>> value = p.scope().value(setting.value, Measure::any);
@@ -297,10 +299,11 @@ void check_pitch(Parser& p, std::span<const Fabric* const> inside, const fabric:
       number.empty() || pitch.text.find('/') != std::string::npos
           ? std::string()
           : fmt::format("for {0} yarns on a length write '{0}/{1}'; ", number, unit);
-  p.error(pitch.spot, fmt::format("the pitch {} is {:.0f} times the width of the yarn, {:.3g} {}: {}for a cloth as open "
-                                  "as this write '{} open'",
-                                  in_quotes(pitch.text), widths, width, name_of(inside.front()->units), by_length,
-                                  pitch.text));
+  p.error(pitch.spot,
+          fmt::format("the pitch {} is {:.0f} times the width of the yarn, {:.3g} {}: {}for a cloth as open "
+                      "as this write '{} open'",
+                      in_quotes(pitch.text), widths, width, name_of(inside.front()->units), by_length,
+                      pitch.text));
 }
 
 void check_pitches(Parser& p, std::vector<const Fabric*>& inside) {

@@ -152,7 +152,8 @@ bool Scope::begins_with_param(std::string_view text) const {
 bool Scope::is_length(std::string_view text) {
   double number = 0;
   const std::size_t digits = leading_number(text, number);
-  const NumberUnit* const unit = digits > 0 && digits < text.size() ? find_unit(text.substr(digits)) : nullptr;
+  const NumberUnit* const unit =
+      digits > 0 && digits < text.size() ? find_unit(text.substr(digits)) : nullptr;
   return unit != nullptr && unit->measure == Measure::length;
 }
 

@@ -117,8 +117,8 @@ std::pair<std::optional<double>, std::optional<fabric::Hand>> read_turns(Parser&
   std::optional<fabric::Hand> hand;
   const auto is_hand = [&] { return same_word(p.peek_word(), "Z") || same_word(p.peek_word(), "S"); };
   if (is_hand()) hand = p.choice("twist direction", hand_words);
-  const auto turns =
-      p.not_negative(fmt::format("the {} (its direction is the letter Z or S)", what), fabric::twist_quantity);
+  const auto turns = p.not_negative(fmt::format("the {} (its direction is the letter Z or S)", what),
+                                    fabric::twist_quantity);
   for (const std::string_view unit : {"t/m", "turns/m", "tr/m", "/m"})
     if (same_word(p.peek_word(), unit)) p.take_word();
   if (!hand) hand = p.choice("twist direction", hand_words);
@@ -302,9 +302,10 @@ void read_interface(Parser& p, Material& material, std::string_view word) {
 void check_count(Parser& p, const Thread& thread) {
   const CountParts& counted = p.counted;
   const auto differ = [&](std::string_view word, int said, int given) {
-    p.error(counted.spot, fmt::format("the count has {0} {1}, and `{1}` says {2}: write the same number in both, or "
-                                      "leave it out of the count",
-                                      said, word, given));
+    p.error(counted.spot,
+            fmt::format("the count has {0} {1}, and `{1}` says {2}: write the same number in both, or "
+                        "leave it out of the count",
+                        said, word, given));
   };
   if (thread.plies && counted.plies > 1 && counted.plies != thread.plies->count)
     differ("plies", counted.plies, thread.plies->count);

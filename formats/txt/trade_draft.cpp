@@ -17,8 +17,9 @@ using Form = Draft::Form;
 constexpr int max_of_group = 50;  // yarns that go as one
 
 // Denton and Daniels, Textile Terms and Definitions, under each name.
-constexpr std::array<std::string_view, 11> plain_names = {"taffeta", "poplin", "tabby",     "calico", "broadcloth", "muslin",
-                                                          "voile",   "canvas", "percale",   "1/1",    "1x1"};
+constexpr std::array<std::string_view, 11> plain_names = {"taffeta",    "poplin", "tabby", "calico",
+                                                          "broadcloth", "muslin", "voile", "canvas",
+                                                          "percale",    "1/1",    "1x1"};
 struct TwillName {
   std::string_view name;
   int over = 0, under = 0;
@@ -104,8 +105,9 @@ std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
     if (const auto pair = pair_of(words.size() == 2 && is(first, "basket") ? last : first, 'x')) {
       if ((*pair)[0] > max_of_group || (*pair)[1] > max_of_group) return std::nullopt;
       make_groups(draft, (*pair)[0], (*pair)[1]);
-      return words.size() == 2 ? std::string()
-                               : groups_text(*pair) + fmt::format("; a twill is `twill {}/{}`", (*pair)[0], (*pair)[1]);
+      return words.size() == 2
+                 ? std::string()
+                 : groups_text(*pair) + fmt::format("; a twill is `twill {}/{}`", (*pair)[0], (*pair)[1]);
     }
   // `5HS`, `5HS satin`, `crowfoot`.
   const auto shafts = is(first, "crowfoot") ? std::optional(4) : harness_satin(first);

@@ -12,8 +12,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// Without names in quotes, and perhaps numbers: "yarns '' and '' overlap, # deep". An apostrophe within a word is
-// none.
+// Without names in quotes, and perhaps numbers: "yarns '' and '' overlap, # deep". An apostrophe within a
+// word is none.
 std::string pattern_of(std::string_view text, bool has_numbers = false) {
   std::string pattern;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -52,8 +52,8 @@ bool Tally::take(const Message& message, double badness) {
     kind.worst = message;
   }
   if (kind.shown.size() < shown_of_a_kind) {
-    // Defects are shown yarn by yarn, of other messages those that differ in more than their names. Where there
-    // is no file yet, the place is not in the text.
+    // Defects are shown yarn by yarn, of other messages those that differ in more than their names. Where
+    // there is no file yet, the place is not in the text.
     const bool is_defect = message.severity == Severity::error || badness > 0;
     std::string text = fmt::format("{}:{}: {}", message.place.line, message.place.column,
                                    is_defect ? to_string(message) : pattern_of(message.text, true));

@@ -21,8 +21,8 @@ struct FibreAlias {
 };
 std::span<const FibreAlias> fibre_aliases();
 
-// By its name or an alias; letters of any case, with or without hyphens, blanks, points, `_`. Null: there is none
-// of that name.
+// By its name or an alias; letters of any case, with or without hyphens, blanks, points, `_`. Null: there is
+// none of that name.
 const Material* find_fibre(std::string_view name);
 
 }  // namespace selvage::fabric

@@ -25,7 +25,8 @@ std::uint64_t ply_count(const Thread& thread, Detail detail) {
 }
 std::uint64_t filament_count(const Thread& thread, Detail detail) {
   const int filaments = thread.filaments.value_or(1);
-  const bool are_built = detail == Detail::filaments || (detail == Detail::usual && filaments <= max_usual_filaments);
+  const bool are_built =
+      detail == Detail::filaments || (detail == Detail::usual && filaments <= max_usual_filaments);
   return are_built ? static_cast<std::uint64_t>(filaments) : 1;
 }
 
@@ -217,14 +218,14 @@ Status Bundle::Content::lay_filaments() {
   if (!wanted) return {};
   const double largest = share_of(diameter);
   if (largest < share_kept * *wanted) {
-    messages.push_back(
-        warning(Kind::geometry,
-                fmt::format("the {} filaments of {} fill {:.3f} of its section, the largest fraction for this number "
-                            "of round filaments{}; its packing is {:.3g}",
-                            plies * filaments,
-                            parent.thread.name.empty() ? fmt::format("yarn '{}'", parent.name)
-                                                       : fmt::format("each yarn of thread '{}'", parent.thread.name),
-                            largest, inclination > 0.0 ? " at this twist" : "", *wanted)));
+    messages.push_back(warning(
+        Kind::geometry,
+        fmt::format("the {} filaments of {} fill {:.3f} of its section, the largest fraction for this number "
+                    "of round filaments{}; its packing is {:.3g}",
+                    plies * filaments,
+                    parent.thread.name.empty() ? fmt::format("yarn '{}'", parent.name)
+                                               : fmt::format("each yarn of thread '{}'", parent.thread.name),
+                    largest, inclination > 0.0 ? " at this twist" : "", *wanted)));
   } else {
     diameter = std::min(diameter, diameter * std::sqrt(*wanted / largest));
   }

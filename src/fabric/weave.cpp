@@ -139,9 +139,10 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   thinner_ = fit->thinner;
   if (fit->gap <= 0.0)
     warn(weave_.place,
-         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: a larger "
-                     "pitch or narrower sections give it",
-                     -fit->gap, unit),
+         fmt::format(
+             "yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: a larger "
+             "pitch or narrower sections give it",
+             -fit->gap, unit),
          diagnostics);
   else if (thinner_ > 0.0)
     warn(weave_.place,
@@ -154,8 +155,7 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
 // Yarns neither overlap nor are lifted off each other by their flanks.
 bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
   return fit && fit->gap > 0.0 &&
-         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
-         !is_over_dense();
+         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) && !is_over_dense();
 }
 
 bool WeaveConstruction::is_over_dense() const {

@@ -239,7 +239,8 @@ std::string remedies_for(const LooseCloth& cloth) {
       return has_room(cloth, {is_warp ? up(pitch, by) : 1.0, is_warp ? 1.0 : up(pitch, by), 1.0});
     });
     if (!factor) return std::nullopt;
-    return fmt::format("; or `pitch {:.6g}` for the {} alone", rounded(*factor * pitch, true), is_warp ? "warp" : "weft");
+    return fmt::format("; or `pitch {:.6g}` for the {} alone", rounded(*factor * pitch, true),
+                       is_warp ? "warp" : "weft");
   };
   const bool warp_is_denser = cloth.warp.widest * cloth.weft.closest > cloth.weft.widest * cloth.warp.closest;
   std::optional<std::string> one = alone(warp_is_denser);

@@ -29,7 +29,8 @@ constexpr double tex_of_ne1 = 590.5412;
 }  // namespace
 
 TEST(YarnCount, IndirectSystemsHaveTheirPliesOnEitherSide) {
-  for (const std::string text : {"Ne 30/2", "Ne 2/30", "Ne 30s/2", "Ne 2/30s", "30/2 Ne", "Ne30/2", "Ne 30x2", "Ne 30 x 2"})
+  for (const std::string text :
+       {"Ne 30/2", "Ne 2/30", "Ne 30s/2", "Ne 2/30s", "30/2 Ne", "Ne30/2", "Ne 30x2", "Ne 30 x 2"})
     EXPECT_NEAR(tex_of(text), tex_of_ne1 / 15, 1e-3) << text;
   for (const std::string text : {"Nm 2/60", "Nm 60/2", "nm 60 / 2", "2/60 Nm"})
     EXPECT_NEAR(tex_of(text), 1000.0 / 30, 1e-9) << text;
@@ -39,17 +40,18 @@ TEST(YarnCount, IndirectSystemsHaveTheirPliesOnEitherSide) {
 }
 
 TEST(YarnCount, DirectSystemsHaveFilamentsAndPlies) {
-  for (const std::string text : {"dtex 167/48", "dtex 167 f48", "dtex 167f48", "dtex 167 f 48", "167 dtex f48", "167f48 dtex",
-                                 "dtex 167/f48", "dtex 167/48f"}) {
+  for (const std::string text : {"dtex 167/48", "dtex 167 f48", "dtex 167f48", "dtex 167 f 48",
+                                 "167 dtex f48", "167f48 dtex", "dtex 167/f48", "dtex 167/48f"}) {
     EXPECT_NEAR(tex_of(text), 16.7, 1e-12) << text;
     EXPECT_NE(messages_of(text).find("note: understood as 167 dtex, 48 filaments"), std::string::npos)
         << messages_of(text);
   }
-  for (const std::string text : {"dtex 1400/2", "1400x2 dtex", "dtex 1400 x2", "2x1400 dtex", "1400 dtex x 2", "dtex 1400/1/2"})
+  for (const std::string text :
+       {"dtex 1400/2", "1400x2 dtex", "dtex 1400 x2", "2x1400 dtex", "1400 dtex x 2", "dtex 1400/1/2"})
     EXPECT_NEAR(tex_of(text), 280, 1e-9) << text;
   EXPECT_NE(messages_of("dtex 1400/2").find("2 plies of 1400 dtex; 2800 dtex in all"), std::string::npos);
-  for (const std::string text : {"tex 20x2", "20 tex x 2", "tex 20 X 2", "tex 20 \xC3\x97 2", "R 40 tex/2", "R40 tex/2",
-                                 "20 tex x 2 R 40 tex", "tex 20/2"})
+  for (const std::string text : {"tex 20x2", "20 tex x 2", "tex 20 X 2", "tex 20 \xC3\x97 2", "R 40 tex/2",
+                                 "R40 tex/2", "20 tex x 2 R 40 tex", "tex 20/2"})
     EXPECT_NEAR(tex_of(text), 40, 1e-12) << text;
   for (const std::string text : {"denier 1000/2", "1000D/2", "Td 1000/2", "1000 den x2"})
     EXPECT_NEAR(tex_of(text), 2000.0 / 9, 1e-9) << text;
@@ -82,7 +84,8 @@ TEST(YarnCount, ExpressionsNeedBrackets) {
   EXPECT_NEAR(tex_of("dtex count f48", "param count 167\n"), 16.7, 1e-12);
   for (const std::string text : {"dtex 1400*2", "dtex 100+67", "tex 20.5/2.5"})
     EXPECT_NE(messages_of(text).find("needs brackets"), std::string::npos) << messages_of(text);
-  EXPECT_NE(messages_of("dtex count/2", "param count 167\n").find("needs brackets: (count/2)"), std::string::npos);
+  EXPECT_NE(messages_of("dtex count/2", "param count 167\n").find("needs brackets: (count/2)"),
+            std::string::npos);
 }
 
 TEST(YarnCount, SaysWhatIsWrong) {

@@ -1,5 +1,5 @@
-// What people write instead of what the language has: it is understood, or the message's remedy, applied here word for
-// word, makes a text that builds.
+// What people write instead of what the language has: it is understood, or the message's remedy, applied here
+// word for word, makes a text that builds.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -13,10 +13,12 @@ namespace selvage::test {
 namespace {
 
 const std::string cloth =
-    "fabric 1\ntitle \"My cloth\"\nthread cotton\n  Ne 20\n  material cotton\nend\nweave\n  warp cotton 8 24/cm\n"
+    "fabric 1\ntitle \"My cloth\"\nthread cotton\n  Ne 20\n  material cotton\nend\nweave\n  warp cotton 8 "
+    "24/cm\n"
     "  weft cotton 8 22/cm\n  draft plain\nend\n";
 const std::string knit =
-    "fabric 1\nthread cotton\n  Ne 30\n  material cotton\nend\nknit jersey\n  thread cotton\n  courses 4 18/cm\n"
+    "fabric 1\nthread cotton\n  Ne 30\n  material cotton\nend\nknit jersey\n  thread cotton\n  courses 4 "
+    "18/cm\n"
     "  wales 4 13/cm\nend\n";
 
 struct Slip {
@@ -53,28 +55,36 @@ Pointed pointed_at(const std::string& text, const TextPlace& place) {
   const std::size_t end = std::min(text.find('\n', begin), text.size());
   const std::size_t at = std::min(begin + static_cast<std::size_t>(place.column) - 1, end);
   const std::size_t stop = std::min(text.find_first_of(" \n", at), end);
-  return {text.substr(0, begin), text.substr(begin, at - begin), text.substr(at, stop - at), text.substr(stop, end - stop),
-          text.substr(end)};
+  return {text.substr(0, begin), text.substr(begin, at - begin), text.substr(at, stop - at),
+          text.substr(stop, end - stop), text.substr(end)};
 }
 
 // Each kind of remedy that a message has, done.
 std::string remedied(const std::string& text, const Message& message) {
   const Pointed p = pointed_at(text, message.place);
-  const auto token = [&](const std::string& now) { return p.before + p.line_front + now + p.line_back + p.after; };
+  const auto token = [&](const std::string& now) {
+    return p.before + p.line_front + now + p.line_back + p.after;
+  };
   const auto rest_of_line = [&](const std::string& now) { return p.before + p.line_front + now + p.after; };
   const std::string& said = message.text;
   std::smatch found;
   if (std::regex_search(said, found, std::regex("did you mean '([^']*)'"))) return token(found[1]);
   if (std::regex_search(said, found, std::regex("write '([^']*)'"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("needs brackets: (\\(.*\\))"))) return rest_of_line(found[1]);
-  if (std::regex_search(said, found, std::regex("decimal mark is the point, write ([0-9.]+)"))) return token(found[1]);
+  if (std::regex_search(said, found, std::regex("decimal mark is the point, write ([0-9.]+)")))
+    return token(found[1]);
   if (std::regex_search(said, found, std::regex("as in ([^ ,]+)"))) return rest_of_line(" " + found[1].str());
-  if (std::regex_search(said, found, std::regex("is missing: ([^ ,]+),"))) return rest_of_line(" " + found[1].str());
+  if (std::regex_search(said, found, std::regex("is missing: ([^ ,]+),")))
+    return rest_of_line(" " + found[1].str());
   if (std::regex_search(said, found, std::regex("known: ([^ ,]+),"))) return token(found[1]);
-  if (std::regex_search(said, found, std::regex("statement of a file is '([^']*)'"))) return found[1].str() + "\n" + text;
-  if (said.starts_with("'end' is missing")) return p.before + "end\n" + p.line_front + p.token + p.line_back + p.after;
-  if (std::regex_search(said, found, std::regex("`(pitch [0-9.]+)` for the warp and `(pitch [0-9.]+)` for the weft"))) {
-    const std::string now = std::regex_replace(text, std::regex("warp cotton 8 .*"), "warp cotton 8 " + found[1].str());
+  if (std::regex_search(said, found, std::regex("statement of a file is '([^']*)'")))
+    return found[1].str() + "\n" + text;
+  if (said.starts_with("'end' is missing"))
+    return p.before + "end\n" + p.line_front + p.token + p.line_back + p.after;
+  if (std::regex_search(said, found,
+                        std::regex("`(pitch [0-9.]+)` for the warp and `(pitch [0-9.]+)` for the weft"))) {
+    const std::string now =
+        std::regex_replace(text, std::regex("warp cotton 8 .*"), "warp cotton 8 " + found[1].str());
     return std::regex_replace(now, std::regex("weft cotton 8 .*"), "weft cotton 8 " + found[2].str());
   }
   return text;
@@ -91,45 +101,46 @@ void expect_cured(const std::string& text) {
 }  // namespace
 
 TEST(Slips, AreUnderstood) {
-  const std::string warp = "warp cotton 8 24/cm", count = "Ne 20", title = "\"My cloth\"", draft = "draft plain";
-  const std::vector<Slip> slips = {
-      {warp, "warp cotton 8 24 per cm"},
-      {warp, "warp cotton 8 24 /cm"},
-      {warp, "warp cotton 8 24/ cm"},
-      {warp, "warp cotton 8 24 ends/cm"},
-      {warp, "warp cotton 8 240 threads per 10 cm"},
-      {warp, "warp cotton 8 60 epi"},
-      {warp, "warp cotton 8 60epi"},
-      {warp, "warp cotton 8 60 ends per inch"},
-      {warp, "warp cotton 8 0.42 mm"},
-      {warp, "warp cotton 8 24/cm // ends"},
-      {warp, "// of the loom\n  " + warp},
-      {warp, "warp\xC2\xA0"
-             "cotton 8\xE2\x80\xAF"
-             "24/cm"},
-      {"weft cotton 8 22/cm", "fill cotton 8 55 ppi"},
-      {title, "\xE2\x80\x9CMy cloth\xE2\x80\x9D"},
-      {count, "Ne 20\n  colour steelblue"},
-      {count, "Ne 20\n  color #48b"},
-      {count, "Ne 20\n  color rebeccapurple"},
-      {count, "Ne 20\n  twist Z 800"},
-      {count, "Ne 20\n  twist 800 t/m Z"},
-      {count, "Ne 20\n  twist 800 tpm Z"},
-      {count, "Ne 40/2"},
-      {count, "40/2 Ne"},
-      {count, "diameter 0.2 mm"},
-      {"  material cotton", "  material Cotton"},
-      {"  material cotton", "  material E-glass"},
-      {"  material cotton", "  material PA66"},
-      {"  material cotton", "  material kevlar"},
-      {draft, "draft oxford"},
-      {draft, "draft basket 2x1"},
-      {draft, "draft taffeta"},
-      {draft, "draft drill"},
-      {draft, "draft 1/1"},
-      {draft, "draft twill 2x2"},
-      {draft, "draft satin 6"},
-      {warp, "warp cotton 8 24 open"}};
+  const std::string warp = "warp cotton 8 24/cm", count = "Ne 20", title = "\"My cloth\"",
+                    draft = "draft plain";
+  const std::vector<Slip> slips = {{warp, "warp cotton 8 24 per cm"},
+                                   {warp, "warp cotton 8 24 /cm"},
+                                   {warp, "warp cotton 8 24/ cm"},
+                                   {warp, "warp cotton 8 24 ends/cm"},
+                                   {warp, "warp cotton 8 240 threads per 10 cm"},
+                                   {warp, "warp cotton 8 60 epi"},
+                                   {warp, "warp cotton 8 60epi"},
+                                   {warp, "warp cotton 8 60 ends per inch"},
+                                   {warp, "warp cotton 8 0.42 mm"},
+                                   {warp, "warp cotton 8 24/cm // ends"},
+                                   {warp, "// of the loom\n  " + warp},
+                                   {warp,
+                                    "warp\xC2\xA0"
+                                    "cotton 8\xE2\x80\xAF"
+                                    "24/cm"},
+                                   {"weft cotton 8 22/cm", "fill cotton 8 55 ppi"},
+                                   {title, "\xE2\x80\x9CMy cloth\xE2\x80\x9D"},
+                                   {count, "Ne 20\n  colour steelblue"},
+                                   {count, "Ne 20\n  color #48b"},
+                                   {count, "Ne 20\n  color rebeccapurple"},
+                                   {count, "Ne 20\n  twist Z 800"},
+                                   {count, "Ne 20\n  twist 800 t/m Z"},
+                                   {count, "Ne 20\n  twist 800 tpm Z"},
+                                   {count, "Ne 40/2"},
+                                   {count, "40/2 Ne"},
+                                   {count, "diameter 0.2 mm"},
+                                   {"  material cotton", "  material Cotton"},
+                                   {"  material cotton", "  material E-glass"},
+                                   {"  material cotton", "  material PA66"},
+                                   {"  material cotton", "  material kevlar"},
+                                   {draft, "draft oxford"},
+                                   {draft, "draft basket 2x1"},
+                                   {draft, "draft taffeta"},
+                                   {draft, "draft drill"},
+                                   {draft, "draft 1/1"},
+                                   {draft, "draft twill 2x2"},
+                                   {draft, "draft satin 6"},
+                                   {warp, "warp cotton 8 24 open"}};
   for (const Slip& slip : slips) {
     const std::optional<Message> error = first_error(with(cloth, slip));
     EXPECT_FALSE(error) << slip.wrong << "\n" << (error ? to_string(*error) : std::string());
@@ -145,7 +156,8 @@ TEST(Slips, AreUnderstood) {
 }
 
 TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
-  const std::string warp = "warp cotton 8 24/cm", weft = "weft cotton 8 22/cm", count = "Ne 20", draft = "draft plain";
+  const std::string warp = "warp cotton 8 24/cm", weft = "weft cotton 8 22/cm", count = "Ne 20",
+                    draft = "draft plain";
   const std::vector<Slip> slips = {{warp, "warp cotton 24/cm"},
                                    {warp, "warp cotton 60 epi"},
                                    {warp, "warp cotton 0.42 mm"},
@@ -196,7 +208,9 @@ TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
 
 // A spacer is named as what it is, and its block is one error.
 TEST(Slips, SpacerIsOffered) {
-  const std::string text = read("fabric 1\nthread a\n  dtex 100\n  material PES\nend\nknit spacer\n  front a\n  spacer a\nend\n").text();
+  const std::string text =
+      read("fabric 1\nthread a\n  dtex 100\n  material PES\nend\nknit spacer\n  front a\n  spacer a\nend\n")
+          .text();
   EXPECT_NE(text.find("'gating opposite D'"), std::string::npos) << text;
   EXPECT_EQ(text.find("error: ", text.find("error: ") + 1), std::string::npos) << text;
 }
