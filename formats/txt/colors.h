@@ -1,4 +1,5 @@
-// Colours by name (those of CSS, https://www.w3.org/TR/css-color-4, that cloth is sold in) and as #RRGGBB.
+// Colours by name (those of CSS, https://www.w3.org/TR/css-color-4, but that `indigo` is a denim's), as
+// #RRGGBB and #RGB.
 #pragma once
 
 #include <optional>

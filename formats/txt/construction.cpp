@@ -6,6 +6,8 @@
 #include "fabric/draft.h"
 #include "fabric/lapping.h"
 #include "formats/txt/blocks.h"
+#include "formats/txt/pitch.h"
+#include "formats/txt/trade_draft.h"
 
 namespace selvage::formats::txt {
 
@@ -21,13 +23,54 @@ using fabric::WeaveSystem;
 // --- weave
 // ----------------------------------------------------------------------------------------------------------
 
+// A pitch without what may follow it.
+std::string_view without_open(std::string_view text) {
+  constexpr std::string_view open = "open";
+  if (text.size() <= open.size() || !same_word(text.substr(text.size() - open.size()), open)) return text;
+  const std::string_view before = text.substr(0, text.size() - open.size());
+  return before.ends_with(' ') || before.ends_with('\t') ? trimmed(before) : text;
+}
+
 // [pitch] P: the word may be left out before a number.
 std::optional<double> read_pitch(Parser& p) {
   const std::string_view word = p.peek_word();
   const bool is_number = word.empty() || !is_letter(word.front()) || p.scope().begins_with_param(word) ||
                          word.find('(') != std::string_view::npos;
   if (!is_number || same_word(word, "pitch")) p.expect("pitch");
-  return p.positive("the pitch", Measure::pitch);
+  const std::string_view text = without_open(p.peek_rest());
+  const std::optional<std::string> own =
+      p.has_failed() ? std::nullopt : pitch_in_own_form(with_plain_blanks(text));
+  if (!own) return p.positive("the pitch", Measure::pitch);
+  p.take_bytes(text.size());
+  const std::optional<Result<double>> value = p.scope().value(*own, Measure::pitch);
+  if (value && value->ok()) return **value;
+  p.error(p.last(),
+          fmt::format("the pitch: {}", value ? value->error().text : in_quotes(text) + " is not a number"));
+  return std::nullopt;
+}
+
+// The number of yarns that is missing in front of a pitch: `warp cotton 24/cm`. `noun`: "ends".
+bool lacks_count(Parser& p, std::string_view noun) {
+  const std::string plain = with_plain_blanks(p.peek_rest());
+  const std::string_view text = without_open(plain);
+  const std::size_t blank = text.find_last_of(" \t");
+  const std::string_view front = blank == std::string_view::npos ? text : trimmed(text.substr(0, blank));
+  const auto is_pitch = [&](std::string_view part) {
+    return !part.empty() && part.front() >= '0' && part.front() <= '9' &&
+           (pitch_in_own_form(part) || (part.find_first_of(" \t") == std::string_view::npos &&
+                                        (p.scope().is_count(part) || p.scope().is_length(part))));
+  };
+  if (is_pitch(text)) {
+    p.error(p.here(), fmt::format("the number of {} is missing in front of the pitch: write '8 {}' for 8 {}",
+                                  noun, text, noun));
+  } else if (const std::string_view behind = text.substr(std::min(text.size(), front.size()));
+             is_pitch(front) && trimmed(behind).find_first_not_of("0123456789") == std::string_view::npos) {
+    p.error(p.here(), fmt::format("the number of {} is in front of the pitch: write '{} {}'", noun,
+                                  trimmed(behind), front));
+  } else {
+    return false;
+  }
+  return true;
 }
 
 // Names used in turn, `a,b`; `4a,2b`: four times one, twice the other.
@@ -44,18 +87,27 @@ void read_threads(Parser& p, std::vector<std::string>& threads) {
   } while (p.comma());
 }
 
-void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
-  const auto number = p.count(what);
+void read_extent(Parser& p, std::string_view noun, int& count, double& pitch) {
+  if (lacks_count(p, noun)) return;
+  const auto number = p.count(fmt::format("the number of {}", noun));
   const auto distance = read_pitch(p);
   if (!p.finish()) return;
   count = *number;
   pitch = *distance;
 }
 
-void read_system(Parser& p, WeaveSystem& system) {
+void read_system(Parser& p, WeaveSystem& system, std::string_view noun) {
   system.place = p.statement().place();
   read_threads(p, system.threads);
-  read_extent(p, "the number of yarns", system.count, system.pitch);
+  if (p.has_failed() || lacks_count(p, noun)) return;
+  const auto number = p.count(fmt::format("the number of {}", noun));
+  const auto distance = read_pitch(p);
+  PitchText& text = p.pitches[system.place.line];
+  text = {p.last(), std::string(p.token()), false};
+  text.is_open = p.more() && same_word(p.peek_word(), "open") && p.expect("open");
+  if (!p.finish()) return;
+  system.count = *number;
+  system.pitch = *distance;
 }
 
 // The rows of a user's own loop.
@@ -75,10 +127,10 @@ struct WeaveBlock : Weave {
 };
 
 void read_warp(Parser& p, WeaveBlock& weave, std::string_view) {
-  read_system(p, weave.warp);
+  read_system(p, weave.warp, "ends");
 }
 void read_weft(Parser& p, WeaveBlock& weave, std::string_view) {
-  read_system(p, weave.weft);
+  read_system(p, weave.weft, "picks");
 }
 
 // Rows of signs, one character each and equally many a row: a draft's, a chart's.
@@ -141,6 +193,11 @@ void read_draft_numbers(Parser& p, Draft& draft) {
   if (is_twill && numbers->size() > 2) draft.further.assign(numbers->begin() + 2, numbers->end());
   if (is_twill && p.more()) draft.hand = p.choice("direction of the twill", hand_words).value_or(Hand::z);
   if (is_satin && p.more()) draft.warp_faced = p.choice("face of the satin", face_words).value_or(false);
+  if (draft.form == Draft::Form::basket && draft.a != draft.b)
+    p.report.note(spot,
+                  fmt::format("basket {0}/{1}: groups of {0} and of {1} in turn, both ways; {0} ends x {1} "
+                              "picks as one, as an Oxford has them, are `basket {0}x{1}`",
+                              draft.a, draft.b));
   // What cannot be is told where it stands.
   const long long shafts = std::accumulate(numbers->begin(), numbers->end(), 0LL);
   if (p.finish() && shafts <= most_shafts_checked)
@@ -154,6 +211,13 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
   weave.draft_place = p.statement();
   draft.place = p.statement().place();
   if (!p.more()) return read_draft_rows(p, draft);
+  const std::string_view text = p.peek_rest();
+  if (const auto understood = draft_of_trade(text, draft)) {
+    p.take_bytes(text.size());
+    if (!understood->empty())
+      p.report.note(p.last(), fmt::format("draft {}: understood as {}", in_quotes(text), *understood));
+    return;
+  }
   const auto form = p.choice("draft", draft_words);
   if (!form) return p.skip_statement();
   draft.form = *form;
@@ -234,8 +298,9 @@ void read_construction_thread(Parser& p, T& construction, std::string_view) {
 }
 
 // N [[pitch] P]
-void read_knit_extent(Parser& p, std::string_view what, int& count, double& pitch) {
-  const auto number = p.count(what);
+void read_knit_extent(Parser& p, std::string_view noun, int& count, double& pitch) {
+  if (lacks_count(p, noun)) return;
+  const auto number = p.count(fmt::format("the number of {}", noun));
   std::optional<double> distance;
   if (p.more()) distance = read_pitch(p);
   if (!p.finish()) return;
@@ -244,16 +309,21 @@ void read_knit_extent(Parser& p, std::string_view what, int& count, double& pitc
 }
 
 void read_knit_courses(Parser& p, Knit& knit, std::string_view) {
-  read_knit_extent(p, "the number of courses", knit.courses, knit.course_pitch);
+  read_knit_extent(p, "courses", knit.courses, knit.course_pitch);
 }
 
 void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
-  read_knit_extent(p, "the number of wales", knit.wales, knit.wale_pitch);
+  read_knit_extent(p, "wales", knit.wales, knit.wale_pitch);
 }
 
 void read_loop(Parser& p, Knit& knit, std::string_view) {
   const auto length = p.positive("the length of a loop", Measure::length);
   if (p.finish()) knit.loop = *length;
+}
+
+// `stitch length L`.
+void read_stitch_length(Parser& p, Knit& knit, std::string_view word) {
+  if (p.expect("length")) read_loop(p, knit, word);
 }
 
 void read_knit_threads(Parser& p, Knit& knit, std::string_view) {
@@ -432,11 +502,11 @@ void read_inserted_weft(Parser& p, Warpknit& warpknit, std::string_view) {
 }
 
 void read_warpknit_wales(Parser& p, Warpknit& warpknit, std::string_view) {
-  read_extent(p, "the number of wales", warpknit.wales, warpknit.wale_pitch);
+  read_extent(p, "wales", warpknit.wales, warpknit.wale_pitch);
 }
 
 void read_warpknit_courses(Parser& p, Warpknit& warpknit, std::string_view) {
-  read_extent(p, "the number of courses", warpknit.courses, warpknit.course_pitch);
+  read_extent(p, "courses", warpknit.courses, warpknit.course_pitch);
 }
 
 // --- braid
@@ -548,6 +618,7 @@ std::string read_file_name(Parser& p, std::string_view what) {
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<WeaveBlock> table({{"warp", read_warp, Times::once},
                                         {"weft", read_weft, Times::once},
+                                        {"fill", read_weft, Times::once, "weft"},
                                         {"draft", read_draft},
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
@@ -597,6 +668,7 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                   {"courses", read_knit_courses, Times::once},
                                   {"wales", read_knit_wales, Times::once},
                                   {"loop", read_loop},
+                                  {"stitch", read_stitch_length, Times::at_most_once, "loop"},
                                   {"feeds", into(&Knit::feeds, a_count("the rows of the chart in a course"))},
                                   {"gating", read_gating},
                                   {"plating", read_plating},
@@ -613,7 +685,23 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   const Spot opened = p.statement();
   knit.place = opened.place();
   const bool has_form = p.more();
-  const auto form = has_form ? p.choice("knit", knit_words) : std::optional(Knit::Form::chart);
+  const bool is_spacer = same_word(p.peek_word(), "spacer");
+  if (is_spacer) {
+    p.report.error(
+        p.here(),
+        "a spacer is not built as one; two faces with yarns between them are a chart of K, P, T and U with "
+        "'gating opposite D', D their distance: see 'selvage explain gating'",
+        Kind::unsupported);
+    p.take_bytes(p.peek_rest().size());
+    return p.skip_statement();
+  }
+  // A plain knit of one bed.
+  if (same_word(p.peek_word(), "single") || same_word(p.peek_word(), "plain")) p.take_word();
+  if (same_word(p.peek_word(), "single-jersey")) p.take_word();
+  const bool is_named = p.more();
+  const auto form = !has_form  ? std::optional(Knit::Form::chart)
+                    : is_named ? p.choice("knit", knit_words)
+                               : std::optional(Knit::Form::jersey);
   knit.form = form.value_or(Knit::Form::jersey);
   const auto rib = knit.form == Knit::Form::rib ? p.pair("the rib", 'x') : std::nullopt;
   if (rib) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "core/number_text.h"
 #include "formats/txt/words.h"
 
 namespace selvage::formats::txt {
@@ -17,6 +18,38 @@ namespace {
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
+}
+
+// The bytes of a blank at p: 1, those of a no-break or thin space as word processors put in, or 0.
+std::size_t blank_at(const char* p, const char* end) {
+  if (p == end) return 0;
+  if (is_blank(*p)) return 1;
+  if (static_cast<unsigned char>(*p) < 0x80) return 0;
+  constexpr std::string_view wide[] = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x87", "\xE2\x80\x89",
+                                       "\xE3\x80\x80"};
+  const std::string_view rest(p, static_cast<std::size_t>(end - p));
+  for (const std::string_view space : wide)
+    if (rest.starts_with(space)) return space.size();
+  return 0;
+}
+
+// The bytes of a double quote at p, straight or curly; 0: there is none. One that opens with a straight quote
+// closes with one.
+std::size_t quote_at(const char* p, const char* end) {
+  if (p == end) return 0;
+  if (*p == '"') return 1;
+  if (static_cast<unsigned char>(*p) < 0x80) return 0;
+  constexpr std::string_view curly[] = {"\xE2\x80\x9C", "\xE2\x80\x9D", "\xE2\x80\x9E", "\xC2\xAB",
+                                        "\xC2\xBB"};
+  const std::string_view rest(p, static_cast<std::size_t>(end - p));
+  for (const std::string_view quote : curly)
+    if (rest.starts_with(quote)) return quote.size();
+  return 0;
+}
+
+// `//` begins a comment where a word would begin.
+bool begins_comment(const char* p, const char* end) {
+  return end - p > 1 && p[0] == '/' && p[1] == '/';
 }
 
 bool is_not_finite_word(std::string_view word) {
@@ -34,6 +67,17 @@ bool is_number(std::string_view word) {
 
 }  // namespace
 
+std::string with_plain_blanks(std::string_view text) {
+  std::string plain;
+  const char* const end = text.data() + text.size();
+  for (const char* p = text.data(); p != end;) {
+    const std::size_t blank = blank_at(p, end);
+    plain += blank > 0 ? ' ' : *p;
+    p += std::max<std::size_t>(blank, 1);
+  }
+  return plain;
+}
+
 Cursor::Cursor(const Source& source, TextReport& report) : report_(report) {
   std::string_view bytes = source.bytes();
   begin_ = bytes.data();
@@ -50,7 +94,7 @@ bool Cursor::ends_line(const char* p) const {
 }
 
 bool Cursor::ends_token(const char* p) const {
-  return p == end_ || is_blank(*p) || ends_line(p);
+  return p == end_ || blank_at(p, end_) > 0 || ends_line(p);
 }
 
 Spot Cursor::spot_at(const char* p) const {
@@ -60,6 +104,7 @@ Spot Cursor::spot_at(const char* p) const {
 
 bool Cursor::next_statement() {
   go_on();
+  bare_lengths_ = 0;
   if (is_stopped()) return false;
   if (reread_) {
     reread_ = false;
@@ -79,8 +124,8 @@ bool Cursor::next_statement() {
       line_begin_ = ++at_;
       ++line_;
     }
-    while (at_ != end_ && is_blank(*at_)) ++at_;
-    if (at_ == end_ || *at_ == '\n' || ends_line(at_)) continue;
+    skip_blanks();
+    if (at_ == end_ || *at_ == '\n' || ends_line(at_) || begins_comment(at_, end_)) continue;
     if (is_stopped()) return false;
     fresh_ = false;
     statement_ = token_ = at_;
@@ -90,7 +135,7 @@ bool Cursor::next_statement() {
 
 // A comment may hold anything but what shows that the file is no text at all.
 void Cursor::skip_comment() {
-  if (*at_ != '#') return;
+  if (*at_ != '#' && !begins_comment(at_, end_)) return;
   const void* newline = std::memchr(at_, '\n', bytes_left());
   const char* const stop = newline != nullptr ? static_cast<const char*>(newline) : end_;
   const void* zero = std::memchr(at_, '\0', static_cast<std::size_t>(stop - at_));
@@ -120,9 +165,13 @@ std::size_t Cursor::rows_ahead() const {
 // --- tokens
 // ---------------------------------------------------------------------------------------------------------
 
+void Cursor::skip_blanks() {
+  while (const std::size_t size = blank_at(at_, end_)) at_ += size;
+}
+
 bool Cursor::has_token() {
-  while (at_ != end_ && is_blank(*at_)) ++at_;
-  return !ends_line(at_);
+  skip_blanks();
+  return !ends_line(at_) && !begins_comment(at_, end_);
 }
 
 Spot Cursor::here() {
@@ -155,14 +204,13 @@ std::string_view Cursor::take_word() {
 }
 
 std::string_view Cursor::take_color_code() {
-  constexpr std::size_t length = 7;
-  if (has_token() || bytes_left() < length || *at_ != '#') return {};
-  const std::string_view code(at_, length);
-  constexpr std::string_view digits = "0123456789abcdefABCDEF";
-  if (code.find_first_not_of(digits, 1) != std::string_view::npos || !ends_token(at_ + length)) return {};
+  if (has_token() || bytes_left() < 2 || *at_ != '#') return {};
+  const char* stop = at_ + 1;
+  while (stop != end_ && (is_letter(*stop) || (*stop >= '0' && *stop <= '9'))) ++stop;
+  if (stop == at_ + 1 || !ends_token(stop)) return {};
   token_ = at_;
-  at_ += length;
-  return code;
+  at_ = stop;
+  return {token_, static_cast<std::size_t>(stop - token_)};
 }
 
 std::string_view Cursor::take_rest() {
@@ -172,6 +220,29 @@ std::string_view Cursor::take_rest() {
   const char* last = at_;
   while (last != token_ && is_blank(last[-1])) --last;
   return {token_, static_cast<std::size_t>(last - token_)};
+}
+
+std::string_view Cursor::peek_rest() {
+  if (!has_token()) return {};
+  const char* stop = at_;
+  while (!ends_line(stop) && !(begins_comment(stop, end_) && blank_at(stop - 1, stop) > 0)) ++stop;
+  while (stop != at_ && is_blank(stop[-1])) --stop;
+  return {at_, static_cast<std::size_t>(stop - at_)};
+}
+
+void Cursor::take_bytes(std::size_t size) {
+  token_ = at_;
+  at_ += size;
+}
+
+std::optional<std::string_view> Cursor::rest_of(std::string_view what) {
+  if (failed_) return std::nullopt;
+  if (!more()) return fail(here(), fmt::format("{} is missing", what));
+  const std::string_view rest = peek_rest();
+  token_ = at_;
+  at_ += rest.size();
+  if (refuse_foreign(rest)) return std::nullopt;
+  return rest;
 }
 
 bool Cursor::refuse_foreign(std::string_view token) {
@@ -191,15 +262,17 @@ bool Cursor::refuse_foreign(std::string_view token) {
 }
 
 std::optional<std::string_view> Cursor::quoted_name(std::string_view what, bool may_be_empty) {
-  const char* const first = at_ + 1;
+  const char* const first = at_ + quote_at(at_, end_);
+  const bool is_curly = *at_ != '"';
+  const auto closes = [&](const char* p) { return is_curly ? quote_at(p, end_) > 0 : *p == '"'; };
   const char* close = first;
-  while (close != end_ && *close != '"' && *close != '\n') ++close;
+  while (close != end_ && !closes(close) && *close != '\n') ++close;
   const Spot open = spot_at(at_);
   at_ = close;
-  if (close == end_ || *close != '"')
+  if (close == end_ || *close == '\n')
     return fail(open, fmt::format("{}: the quote is not closed on this line", what));
   const std::string_view text(first, static_cast<std::size_t>(close - first));
-  ++at_;
+  at_ += quote_at(at_, end_);
   if (refuse_foreign(text)) return std::nullopt;
   if (text.empty() && !may_be_empty) return fail(last(), fmt::format("{}: an empty name", what));
   if (ends_token(at_) || *at_ == ',') return text;
@@ -210,7 +283,7 @@ std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_
   if (failed_) return std::nullopt;
   if (!more()) return fail(here(), fmt::format("{} is missing", what));
   token_ = at_;
-  if (*at_ == '"') return quoted_name(what, may_be_empty);
+  if (quote_at(at_, end_) > 0) return quoted_name(what, may_be_empty);
   const std::string_view word = word_at(at_);
   const char* p = at_;
   while (p != word.data() + word.size() && (p == at_ ? starts_name(*p) : continues_name(*p))) ++p;
@@ -325,7 +398,26 @@ std::optional<double> Cursor::number(std::string_view what, Measure measure) {
   if (!more()) return fail(here(), fmt::format("{} is missing", what));
   token_ = at_;
   double value = 0.0;
-  return parse_number(value) ? value : other_number(what, measure);
+  return parse_number(value) ? with_unit_behind(value, what, measure) : other_number(what, measure);
+}
+
+// `0.42 mm`: a unit behind a blank. Where bare numbers are in front of it, it may be meant for these, too.
+std::optional<double> Cursor::with_unit_behind(double value, std::string_view what, Measure measure) {
+  if (measure == Measure::plain || measure == Measure::any) return value;
+  const Spot spot = last();
+  const std::string_view word = peek_word();
+  const NumberUnit* const unit = word.empty() ? nullptr : Scope::unit_of(word, measure);
+  if (unit == nullptr) {
+    bare_lengths_ += measure == Measure::length ? 1 : 0;
+    return value;
+  }
+  take_word();
+  const double size = scope_.size_of(*unit);
+  if (bare_lengths_ > 0 && measure == Measure::length && size != 1.0)
+    return fail(spot,
+                fmt::format("{}: every number of this line needs its own unit right behind it, as in {}{}",
+                            what, number_text(value), word));
+  return size < 1.0 ? value / (1.0 / size) : value * size;
 }
 
 std::optional<int> Cursor::integer(std::string_view what, int least, int most) {

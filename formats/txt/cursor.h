@@ -4,6 +4,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/source.h"
@@ -11,6 +12,9 @@
 #include "formats/txt/scope.h"
 
 namespace selvage::formats::txt {
+
+// The same with no-break and thin spaces as blanks.
+std::string with_plain_blanks(std::string_view text);
 
 class Cursor {
  public:
@@ -42,7 +46,9 @@ class Cursor {
   bool more() { return !failed_ && has_token(); }
   // The next token's spot; at the end of the line just behind the last token.
   Spot here();
-  // The spot of the token taken last.
+  // The token taken last.
+  [[nodiscard]] std::string_view token() const { return {token_, static_cast<std::size_t>(at_ - token_)}; }
+  // Its spot.
   [[nodiscard]] Spot last() const { return spot_at(token_); }
 
   // Does the next token begin with this character, or with a letter?
@@ -52,10 +58,17 @@ class Cursor {
   // The next word, up to a blank; empty at the end of the line. Taking leaves it behind, peeking does not.
   std::string_view peek_word();
   std::string_view take_word();
-  // `#RRGGBB`, which elsewhere would be a comment; empty where the next token is none.
+  // `#RRGGBB`, `#RGB`, or what may be meant as one, which elsewhere would be a comment; empty where the next
+  // token is none.
   std::string_view take_color_code();
   // The text up to a comment or the end of the line, without blanks round it.
   std::string_view take_rest();
+  // The same of a value, which has to be there: reports what is missing, and what is no text.
+  std::optional<std::string_view> rest_of(std::string_view what);
+  // The same, without taking it.
+  [[nodiscard]] std::string_view peek_rest();
+  // Leaves that many bytes behind, as one token.
+  void take_bytes(std::size_t size);
 
   // The following report what is wrong, calling the value `what`, and give nothing then, nor for what follows
   // it in the statement: that is not looked at. A name, or text in quotes; `may_be_empty`: "" is allowed.
@@ -94,11 +107,13 @@ class Cursor {
   [[nodiscard]] Spot spot_at(const char* p) const;
   [[nodiscard]] std::string_view word_at(const char* p) const;
   bool has_token();
+  void skip_blanks();
   bool parse_number(double& value);
   bool parse_tiny_number(double& value);
   [[nodiscard]] std::string_view expression_at(const char* p) const;
   // What is no bare number: with a unit, or an expression; else says what is wrong with it.
   std::optional<double> other_number(std::string_view what, Measure measure);
+  std::optional<double> with_unit_behind(double value, std::string_view what, Measure measure);
   std::nullopt_t explain_number(std::string_view what);
   std::optional<std::string_view> quoted_name(std::string_view what, bool may_be_empty);
   void skip_comment();
@@ -117,7 +132,8 @@ class Cursor {
   bool fresh_ = true;  // the first line has not been looked at
   bool reread_ = false;
   bool stopped_ = false;
-  bool failed_ = false;  // a value of the statement
+  int bare_lengths_ = 0;  // numbers of the statement that measure lengths and have no unit
+  bool failed_ = false;   // a value of the statement
 };
 
 }  // namespace selvage::formats::txt

@@ -27,6 +27,9 @@ std::vector<Known> all_known() {
     if (material.packing) text += fmt::format(", packing {}", number_text(*material.packing));
     known.push_back({std::string(material.name), fmt::format("{} ({})", text, fibre.source)});
   }
+  for (const fabric::FibreAlias& alias : fabric::fibre_aliases())
+    known.push_back(
+        {std::string(alias.alias), fmt::format("another name of the fibre {}, for `material`", alias.name)});
   for (const std::string_view name : color_names())
     known.push_back({std::string(name), "a colour, for `color`"});
   for (const std::string_view name : function_names())

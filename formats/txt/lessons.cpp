@@ -62,13 +62,28 @@ constexpr std::array lessons = {
         "cell repeat 2 x 1", "length"},
 
     // --- thread
-    Lesson{"tex", "thread yarn", "tex V", "Linear density, g/km; it sizes a circle with density and packing.",
+    Lesson{"tex", "thread yarn", "tex V",
+           "Linear density, g/km, written as dtex is; it sizes a circle with density and packing.",
            "tex 29.5"},
-    Lesson{"dtex", "thread yarn", "dtex V", "Linear density, g/10 km.", "dtex 167"},
-    Lesson{"denier", "thread yarn", "denier V", "Linear density, g/9 km.", "denier 150"},
+    Lesson{"dtex", "thread yarn", "dtex V[/N][ fN][ xN]",
+           "Linear density, g/10 km, of a single yarn; behind / a number above 9 is that of filaments, any "
+           "other one "
+           "that of plies, which multiply it. With `plies` alone it is that of the whole yarn.",
+           "dtex 167 f48 x2"},
+    Lesson{"denier", "thread yarn", "denier V[/N][ fN][ xN]",
+           "Linear density, g/9 km, written as dtex is; `denier 20/22` is a raw silk's range.",
+           "denier 150/48"},
     Lesson{"Td", "thread yarn", "Td V", "Linear density, g/9 km: another word for denier.", "Td 150"},
-    Lesson{"Nm", "thread yarn", "Nm V", "Metric count, km/kg.", "Nm 34"},
-    Lesson{"Ne", "thread yarn", "Ne V", "English cotton count, hanks of 840 yards a pound.", "Ne 20"},
+    Lesson{"Nm", "thread yarn", "Nm V[/N]",
+           "Metric count, km/kg, of a single yarn; of two numbers the smaller one is that of plies, which "
+           "divide it. "
+           "With `plies` alone it is that of the whole yarn.",
+           "Nm 2/60"},
+    Lesson{"Ne", "thread yarn", "Ne V[/N]",
+           "English cotton count, hanks of 840 yards a pound, of a single yarn; of two numbers the smaller "
+           "one is that "
+           "of plies, which divide it. With `plies` alone it is that of the whole yarn.",
+           "Ne 30/2"},
     Lesson{"density", "thread yarn material", "density V", "Density of the fibre.", "density 1.52", "density",
            "what the material says"},
     Lesson{"packing", "thread yarn material", "packing V",
@@ -83,12 +98,17 @@ constexpr std::array lessons = {
            "The yarn's cross-section: W across, H thick.", "section ellipse 0.8 0.2", "length", "circle"},
     Lesson{"twist", "thread yarn", "twist TURNS Z | S [rotate]",
            "Turns, 0 or more, and their direction: it marks the fibres.", "twist 600 Z", "twist"},
-    Lesson{"plies", "thread yarn", "plies N TURNS Z | S", "A ply yarn of N single yarns, with its ply twist.",
+    Lesson{"plies", "thread yarn", "plies N TURNS Z | S",
+           "A ply yarn of N single yarns, with its ply twist; the count is that of the whole yarn.",
            "plies 2 400 S", "twist"},
     Lesson{"filaments", "thread yarn", "filaments N",
-           "How many there are in each single yarn: each becomes a yarn of its own.", "filaments 19"},
-    Lesson{"color", "thread yarn", "color R G B | #RRGGBB | NAME", "0 to 255 each, or a colour's name.",
-           "color navy"},
+           "Filaments of each single yarn: each becomes a yarn of its own, up to 300; more with --detail "
+           "filaments.",
+           "filaments 19"},
+    Lesson{"color", "thread yarn", "color R G B | #RRGGBB | #RGB | NAME",
+           "0 to 255 each, or a name of CSS; `indigo` is a denim's.", "color navy"},
+    Lesson{"colour", "thread yarn", "colour R G B | #RRGGBB | #RGB | NAME", "Another word for color.",
+           "colour navy"},
     Lesson{"material", "thread yarn", "material NAME", "A `material` block, or a fibre of the trade.",
            "material cotton"},
 
@@ -170,16 +190,23 @@ constexpr std::array lessons = {
            "closed"},
 
     // --- weave
-    Lesson{"warp", "weave", "warp THREADS N [pitch] P",
-           "The warps: threads in turn (`a,2b`), how many, and how far apart.", "warp cotton 8 24/cm",
-           "pitch"},
-    Lesson{"weft", "weave", "weft THREADS N [pitch] P",
-           "The wefts: threads in turn (`a,2b`), how many, and how far apart.", "weft cotton 8 pitch 0.4",
-           "pitch"},
+    Lesson{"warp", "weave", "warp THREADS N [pitch] P [open]",
+           "The warps: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than "
+           "20 times "
+           "their width.",
+           "warp cotton 8 24/cm", "pitch"},
+    Lesson{"weft", "weave", "weft THREADS N [pitch] P [open]",
+           "The wefts: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than "
+           "20 times "
+           "their width.",
+           "weft cotton 8 pitch 0.4", "pitch"},
+    Lesson{"fill", "weave", "fill THREADS N [pitch] P [open]", "Another word for weft.",
+           "fill cotton 8 60 ppi", "pitch"},
     Lesson{
         "draft", "weave",
-        "draft plain | twill A/B[/...] [Z | S] | satin N[/STEP] [weft-faced | warp-faced] | basket A/B | "
-        "leno "
+        "draft plain | twill A/B[/...] [Z | S] | satin N[/STEP] [weft-faced | warp-faced] | basket "
+        "ENDSxPICKS | "
+        "basket A/B | oxford | drill | 5HS | leno "
         "[half | full] | file NAME",
         "Which yarn is on top; without a word a block of rows of 0 and 1 (1: warp on top) that `end` closes.",
         "draft twill 2/2"},
@@ -213,6 +240,8 @@ constexpr std::array lessons = {
            "pitch", "8 times half the diameter"},
     Lesson{"loop", "knit", "loop L", "Length of yarn of a stitch, the mean over a repeat of the chart.",
            "loop 2.8", "length", "that of the published loop"},
+    Lesson{"stitch", "knit", "stitch length L", "Another word for loop.", "stitch length 2.8", "length",
+           "that of the published loop"},
     Lesson{"feeds", "knit", "feeds N", "So many rows of the chart, and yarns, make a course.", "feeds 3", "",
            "1"},
     Lesson{"gating", "knit", "gating rib | opposite [D]",

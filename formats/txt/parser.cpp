@@ -47,14 +47,21 @@ int Parser::next_in_block(Block& block) {
       unwinding_ = false;
       return row_step;
     }
-    const std::string_view word = peek_word();
+    std::string_view word = peek_word();
     int step = find_word(block.table->words, word);
+    bool is_in_line = false;  // the line means a word that it does not begin with
+    if (step < 0 && block.table->word_of_line != nullptr) {
+      const std::string_view meant = block.table->word_of_line(peek_rest());
+      step = find_word(block.table->words, meant);
+      is_in_line = step >= 0;
+      if (is_in_line) word = meant;
+    }
     if (step < 0) step = same_word(word, "end") ? static_cast<int>(end_step) : unknown_word(block, word);
     if (step >= 0) step = note_given(block, step, word);
     if (step == missing_end_step) return missing_end(block);
     if (step == skip_step) continue;
     unwinding_ = false;
-    take_word();
+    if (!is_in_line) take_word();
     if (step >= 0) return step;
     if (close(block) == end_step) return end_step;
   }
@@ -113,6 +120,13 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
   std::vector<std::string_view> known = block.table->words;
   if (block.outer != nullptr) known.emplace_back("end");
   const std::string_view near = near_word(word, known);
+  if (block.table->word_of_line != nullptr && word.front() >= '0' && word.front() <= '9') {
+    error(statement(),
+          fmt::format("a yarn count begins with its system, tex, dtex, denier, Nm or Ne: write 'dtex {}'",
+                      shortened(peek_rest())));
+    skip_statement();
+    return skip_step;
+  }
   std::string what = fmt::format("unknown word {}", in_quotes(word));
   if (block.outer != nullptr) what += fmt::format(" in {}", block.title());
   if (block.table->has_rows) what += " where a row of numbers or 'end' is expected";
@@ -227,7 +241,9 @@ std::optional<std::vector<int>> Parser::counts(std::string_view what, char sign)
   if (has_failed()) return std::nullopt;
   const Spot spot = here();
   const std::string_view word = take_word();
-  if (word.empty()) return fail(spot, fmt::format("{} is missing", what));
+  if (word.empty())
+    return fail(spot,
+                fmt::format("{} is missing: whole numbers joined by '{}', as in 2{}1", what, sign, sign));
   std::vector<int> values;
   constexpr std::size_t most = 1000;
   for (const std::string_view part : split(word, sign)) {

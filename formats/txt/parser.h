@@ -44,6 +44,8 @@ struct TableWords {
       slots;  // for each word its own index, or that of the one that it stands instead of
   std::vector<Times> times;
   bool has_rows = false;
+  // The word that a line means which does not begin with one; empty: none. Null: there are no such lines.
+  std::string_view (*word_of_line)(std::string_view line) = nullptr;
   bool rows_of_letters = false;  // rows may begin with a letter: all lines but words of open blocks are rows
 };
 
@@ -77,7 +79,7 @@ struct Block {
   Spot opened;
   const TableWords* table = nullptr;
   const Block* outer = nullptr;
-  std::array<int, 32> given{};  // by slot: the line of the statement; 0: not yet
+  std::array<int, 40> given{};  // by slot: the line of the statement; 0: not yet
 
   [[nodiscard]] std::string title() const;  // "thread 'tow'"
 };
@@ -86,6 +88,19 @@ struct Block {
 struct Names {
   std::string_view kind;                                 // "thread"
   std::unordered_map<std::string_view, int> lines = {};  // where each is defined
+};
+
+// What the notation of a yarn count says beside the count; 1 ply, 0 filaments: nothing.
+struct CountParts {
+  int plies = 1, filaments = 0;
+  Spot spot{};
+};
+
+// A pitch as a text says it.
+struct PitchText {
+  Spot spot;
+  std::string text;
+  bool is_open = false;  // the text says that it is meant, however wide
 };
 
 class Parser : public Cursor {
@@ -142,7 +157,9 @@ class Parser : public Cursor {
   bool take_listed(std::size_t times);
 
   TextReport& report;
-  std::span<const fabric::Setting> settings;  // of params, from outside
+  std::unordered_map<int, PitchText> pitches;  // of the systems of weaves, by their lines
+  CountParts counted;                          // of the thread or yarn at hand
+  std::span<const fabric::Setting> settings;   // of params, from outside
   fabric::Fabric fabric;
   Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"},
       blocks{"block"};

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include "core/number_text.h"
 #include "fabric/inside.h"
 #include "formats/txt/blocks.h"
+#include "formats/txt/pitch.h"
 
 namespace selvage::formats::txt {
 
@@ -41,6 +43,20 @@ void read_units(Parser& p, Fabric& fabric, std::string_view) {
 
 // The value that is set from outside instead of the text's own.
 std::optional<double> value_of_setting(Parser& p, const fabric::Setting& setting, const Spot& spot) {
+  const std::string& text = setting.value;
+  const std::size_t dash = text.find('-', 1);
+  const auto low = dash == std::string::npos ? std::nullopt : read_number(text.substr(0, dash));
+  const auto high = low ? read_number(text.substr(dash + 1)) : std::nullopt;
+  if (high && *high > *low) {
+    constexpr double steps = 3;
+    p.error(spot,
+            fmt::format(
+                "--set {0}={1}: a difference, {2}; 'selvage sweep' takes a range as {0}={3}:{4}:{5} (from, "
+                "to, step), and a difference is written ({1})",
+                setting.name, text, number_text(*low - *high), number_text(*low), number_text(*high),
+                number_text((*high - *low) / steps)));
+    return std::nullopt;
+  }
   std::optional<Result<double>> value = p.scope().value(setting.value, Measure::any);
   if (value && value->ok()) return **value;
   const std::string why = value ? value->error().text : in_quotes(setting.value) + " is not a number";
@@ -268,6 +284,41 @@ void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 
 namespace {
 
+// A pitch that nobody means without a word: 24 where 24/cm was meant.
+void check_pitch(Parser& p, std::span<const Fabric* const> inside, const fabric::WeaveSystem& system) {
+  const auto found = p.pitches.find(system.place.line);
+  const double width = width_of_threads(inside, system.threads);
+  if (found == p.pitches.end() || found->second.is_open || !(width > 0.0)) return;
+  const double widths = system.pitch / width;
+  if (!(widths > max_pitch_in_widths)) return;
+  const PitchText& pitch = found->second;
+  const std::size_t digits = pitch.text.find_first_not_of("0123456789.");
+  const std::string number = pitch.text.substr(0, digits);
+  const std::string_view unit = inside.front()->units == Unit::inch ? "in" : "cm";
+  const std::string by_length =
+      number.empty() || pitch.text.find('/') != std::string::npos
+          ? std::string()
+          : fmt::format("for {0} yarns on a length write '{0}/{1}'; ", number, unit);
+  p.error(pitch.spot,
+          fmt::format("the pitch {} is {:.0f} times the width of the yarn, {:.3g} {}: {}for a cloth as open "
+                      "as this write '{} open'",
+                      in_quotes(pitch.text), widths, width, name_of(inside.front()->units), by_length,
+                      pitch.text));
+}
+
+void check_pitches(Parser& p, std::vector<const Fabric*>& inside) {
+  for (const fabric::Item& item : inside.back()->items)
+    if (const auto* const weave = std::get_if<fabric::Weave>(&item)) {
+      check_pitch(p, inside, weave->warp);
+      check_pitch(p, inside, weave->weft);
+    }
+  for (const fabric::NamedBlock& block : inside.back()->blocks) {
+    inside.push_back(block.fabric.get());
+    check_pitches(p, inside);
+    inside.pop_back();
+  }
+}
+
 std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting> settings,
                            TextReport& report) {
   if (refuse_binary(source, report)) return std::nullopt;
@@ -282,6 +333,8 @@ std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting
     p.check_references();
     p.fabric.tell_threads_their_materials();
     check_settings(p);
+    std::vector<const Fabric*> inside = {&p.fabric};
+    if (report.errors() == 0) check_pitches(p, inside);
     if (report.errors() == 0)
       if (const Status fits = fabric::check_uses(p.fabric); !fits)
         report.error(spot_at(source, fits.error().place), fits.error().text, fits.error().kind);

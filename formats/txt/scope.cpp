@@ -41,7 +41,7 @@ constexpr std::array keywords = {
     "plating",   "pile",       "block",    "use",       "place",        "rotate",      "mirror",
     "shear",     "repeat",     "margin",   "substrate", "points",       "helix",       "pucker",
     "mandrel",   "unit",       "crossing", "shape",     "transfer",     "drop",        "interface",
-    "stiffness", "strength",   "energy",   "planar"};
+    "stiffness", "strength",   "energy",   "planar",    "fill",         "colour"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');
@@ -147,6 +147,19 @@ bool Scope::begins_with_param(std::string_view text) const {
   const auto stop = std::find_if_not(text.begin(), text.end(), continues_identifier);
   const std::string_view name(text.begin(), stop);
   return std::any_of(values_.begin(), values_.end(), [&](const NamedValue& v) { return v.name == name; });
+}
+
+bool Scope::is_length(std::string_view text) {
+  double number = 0;
+  const std::size_t digits = leading_number(text, number);
+  const NumberUnit* const unit =
+      digits > 0 && digits < text.size() ? find_unit(text.substr(digits)) : nullptr;
+  return unit != nullptr && unit->measure == Measure::length;
+}
+
+const NumberUnit* Scope::unit_of(std::string_view word, Measure measure) {
+  const NumberUnit* const unit = find_unit(word);
+  return unit != nullptr && takes(measure, unit->measure) ? unit : nullptr;
 }
 
 double Scope::in_file_units(const NumberUnit& unit) const {

@@ -61,7 +61,16 @@ class Scope {
   std::optional<int> define(std::string_view name, double value, bool is_count, int line);
   // Is this so many on a length (26/cm)?
   [[nodiscard]] bool is_count(std::string_view text) { return count_on_length(text).has_value(); }
+  // Is this a number with a unit of lengths (0.42mm)?
+  [[nodiscard]] static bool is_length(std::string_view text);
   [[nodiscard]] std::vector<std::string_view> names() const;
+  // The unit of that name, if such a number takes it; null: there is none.
+  static const NumberUnit* unit_of(std::string_view word, Measure measure);
+  // What a number with this unit is multiplied by; of lengths in the file's unit.
+  double size_of(const NumberUnit& unit) {
+    has_used_unit_ = has_used_unit_ || unit.measure == Measure::length;
+    return in_file_units(unit);
+  }
 
  private:
   struct Count {

@@ -6,24 +6,45 @@
 #include "core/plane.h"
 #include "formats/txt/blocks.h"
 #include "formats/txt/colors.h"
+#include "formats/txt/count.h"
 
 namespace selvage::formats::txt {
 
 namespace {
 
+using fabric::LinearDensity;
 using fabric::Material;
 using fabric::Thread;
 
 // --- thread
 // ---------------------------------------------------------------------------------------------------------
 
+LinearDensity::Measure system_of(std::string_view word) {
+  for (const auto& measure : density_words)
+    if (same_word(measure.text, word)) return measure.value;
+  return LinearDensity::Measure::denier;  // Td
+}
+
+// More than one number: what a trade writes.
+void read_count_notation(Parser& p, Thread& thread, std::string_view word) {
+  const auto text = p.rest_of(fmt::format("the linear density ({})", word));
+  if (!text) return;
+  const Spot spot = p.last();
+  const Result<YarnCount> count = read_yarn_count(with_plain_blanks(*text), system_of(word), p.scope());
+  if (!count) return p.error(spot, count.error().text);
+  p.check(fabric::linear_density_quantity, count->whole.tex());
+  if (!p.finish()) return;
+  thread.linear_density = count->whole;
+  p.counted = {count->plies, count->filaments, spot};
+  if (count->filaments == 1) thread.filaments = thread.filaments.value_or(1);
+  if (!count->understood.empty()) p.report.note(spot, fmt::format("understood as {}", count->understood));
+}
+
 void read_linear_density(Parser& p, Thread& thread, std::string_view word) {
+  if (is_count_notation(p.peek_rest(), p.scope())) return read_count_notation(p, thread, word);
   const auto value = p.positive(fmt::format("the linear density ({})", word));
   if (!value) return;
-  fabric::LinearDensity density;
-  for (const auto& measure : density_words)
-    if (same_word(measure.text, word)) density = {*value, measure.value};
-  if (same_word(word, "Td")) density = {*value, LinearDensity::Measure::denier};
+  const LinearDensity density = {*value, system_of(word)};
   p.check(fabric::linear_density_quantity, density.tex());
   if (p.finish()) thread.linear_density = density;
 }
@@ -91,18 +112,28 @@ void read_section(Parser& p, Thread& thread, std::string_view) {
   if (std::optional<yarn::Section> section = read_kind(p, *kind, all)) thread.section = std::move(section);
 }
 
+// TURNS and their direction, in either order; turns may say `t/m` behind them.
+std::pair<std::optional<double>, std::optional<fabric::Hand>> read_turns(Parser& p, std::string_view what) {
+  std::optional<fabric::Hand> hand;
+  const auto is_hand = [&] { return same_word(p.peek_word(), "Z") || same_word(p.peek_word(), "S"); };
+  if (is_hand()) hand = p.choice("twist direction", hand_words);
+  const auto turns = p.not_negative(fmt::format("the {} (its direction is the letter Z or S)", what),
+                                    fabric::twist_quantity);
+  for (const std::string_view unit : {"t/m", "turns/m", "tr/m", "/m"})
+    if (same_word(p.peek_word(), unit)) p.take_word();
+  if (!hand) hand = p.choice("twist direction", hand_words);
+  return {turns, hand};
+}
+
 void read_twist(Parser& p, Thread& thread, std::string_view) {
-  const auto turns = p.not_negative("the twist (its direction is the letter Z or S)", fabric::twist_quantity);
-  const auto hand = p.choice("twist direction", hand_words);
+  const auto [turns, hand] = read_turns(p, "twist");
   const bool rotates = p.more() && p.expect("rotate");
   if (p.finish()) thread.twist = {*turns, *hand, rotates};
 }
 
 void read_plies(Parser& p, Thread& thread, std::string_view) {
   const auto count = p.count("the number of plies");
-  const auto turns =
-      p.not_negative("the ply twist (its direction is the letter Z or S)", fabric::twist_quantity);
-  const auto hand = p.choice("twist direction", hand_words);
+  const auto [turns, hand] = read_turns(p, "ply twist");
   if (p.finish()) thread.plies = {*count, *turns, *hand};
 }
 
@@ -113,8 +144,14 @@ void read_color(Parser& p, Thread& thread, std::string_view) {
     const std::string_view given = code.empty() ? p.take_word() : code;
     const std::optional<fabric::Color> named = color_named(given);
     if (!named)
-      return p.error(p.last(), fmt::format("unknown colour {}{} (or #RRGGBB, or three numbers from 0 to 255)",
-                                           in_quotes(given), did_you_mean(given, color_names())));
+      return p.error(
+          p.last(),
+          code.empty()
+              ? fmt::format("unknown colour {}{} (or #RRGGBB, #RGB, or three numbers from 0 to 255)",
+                            in_quotes(given), did_you_mean(given, color_names()))
+              : fmt::format("{} is no colour: behind # there are 6 or 3 digits from 0 to 9 and a to f, as in "
+                            "#4682b4",
+                            in_quotes(given)));
     if (p.finish()) thread.color = named;
     return;
   }
@@ -262,6 +299,20 @@ void read_interface(Parser& p, Material& material, std::string_view word) {
 
 }  // namespace
 
+void check_count(Parser& p, const Thread& thread) {
+  const CountParts& counted = p.counted;
+  const auto differ = [&](std::string_view word, int said, int given) {
+    p.error(counted.spot,
+            fmt::format("the count has {0} {1}, and `{1}` says {2}: write the same number in both, or "
+                        "leave it out of the count",
+                        said, word, given));
+  };
+  if (thread.plies && counted.plies > 1 && counted.plies != thread.plies->count)
+    differ("plies", counted.plies, thread.plies->count);
+  if (thread.filaments && counted.filaments > 0 && counted.filaments != *thread.filaments)
+    differ("filaments", counted.filaments, *thread.filaments);
+}
+
 const std::vector<Statement<Thread>>& thread_statements() {
   static const std::vector<Statement<Thread>> list = {
       {"tex", read_linear_density},
@@ -278,6 +329,7 @@ const std::vector<Statement<Thread>>& thread_statements() {
       {"plies", read_plies},
       {"filaments", into(&Thread::filaments, a_count("the number of filaments"))},
       {"color", read_color},
+      {"colour", read_color, Times::at_most_once, "color"},
       {"material", into(&Thread::material, a_reference(&Parser::materials))}};
   return list;
 }
@@ -297,8 +349,14 @@ static void read_named(Parser& p, const Table<Named>& table, Names& names, std::
 }
 
 void read_thread(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Thread> table(thread_statements());
+  static const Table<Thread> table = [] {
+    Table<Thread> made(thread_statements());
+    made.word_of_line = system_of_count;
+    return made;
+  }();
+  p.counted = {};
   read_named(p, table, p.threads, word, fabric.threads);
+  check_count(p, fabric.threads.back());
 }
 
 void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {

@@ -7,6 +7,7 @@
 #include "core/text_buffer.h"
 #include "core/text_report.h"
 #include "fabric/as_grid.h"
+#include "formats/txt/pitch.h"
 #include "formats/txt/words.h"
 
 namespace selvage::formats::txt {
@@ -72,6 +73,9 @@ class Lines {
     if (begun_) raw("\n");
     return text_.finish();
   }
+
+  // The fabric and the blocks that are open, the innermost one last.
+  std::vector<const fabric::Fabric*> inside;
 
  private:
   TextBuffer text_;
@@ -293,6 +297,8 @@ void write_threads(Lines& out, std::string_view word, const std::vector<std::str
 void write_system(Lines& out, std::string_view word, const fabric::WeaveSystem& system) {
   write_threads(out, word, system.threads);
   out.value(system.count).word("pitch").value(system.pitch);
+  const double width = width_of_threads(out.inside, system.threads);
+  if (width > 0.0 && system.pitch > max_pitch_in_widths * width) out.word("open");
 }
 
 void write_pair(Lines& out, int a, std::string_view sign, int b) {
@@ -565,6 +571,7 @@ void warn_of_losses(const fabric::Fabric& fabric, const EndsChanged& changed, Wr
 
 // What a text and a block of it have alike.
 void write_content(Lines& out, const fabric::Fabric& fabric, WriteFacts& facts, EndsChanged& changed) {
+  out.inside.push_back(&fabric);
   if (fabric.tolerance) out.line(0, "tolerance").value(*fabric.tolerance);
   for (const fabric::Material& material : fabric.materials) write_material(out, material);
   for (const fabric::Outline& outline : fabric.outlines) write_outline(out, outline);
@@ -589,6 +596,7 @@ void write_content(Lines& out, const fabric::Fabric& fabric, WriteFacts& facts, 
   }
   if (!fabric.edits.empty()) out.blank_line();
   for (const fabric::Edit& edit : fabric.edits) write_edit(out, edit);
+  out.inside.pop_back();
 }
 
 }  // namespace

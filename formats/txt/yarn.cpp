@@ -113,7 +113,9 @@ Table<YarnBlock> make_yarn_table() {
       {"ends", read_ends}};
   for (const auto& own : thread_statements())
     statements.push_back({own.word, read_own, own.times, own.instead_of});
-  return Table<YarnBlock>(std::move(statements));
+  Table<YarnBlock> table(std::move(statements));
+  table.word_of_line = system_of_count;
+  return table;
 }
 
 }  // namespace
@@ -131,6 +133,7 @@ void read_yarn(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     yarn.thread_place = p.last().place();
     p.finish();
   }
+  p.counted = {};
   if (p.read_block(word, yarn.name, opened, table, yarn)) check_yarn(p, yarn);
   p.report.set_yarn("");
   fabric.items.emplace_back(static_cast<Yarn&&>(yarn));

@@ -12,9 +12,9 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// Without names in quotes, and numbers: "yarns '' and '' overlap, # deep". An apostrophe within a word is
-// none.
-std::string pattern_of(std::string_view text) {
+// Without names in quotes, and perhaps numbers: "yarns '' and '' overlap, # deep". An apostrophe within a
+// word is none.
+std::string pattern_of(std::string_view text, bool has_numbers = false) {
   std::string pattern;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool opens = text[i] == '\'' && (i == 0 || text[i - 1] == ' ' || text[i - 1] == '(');
@@ -22,6 +22,8 @@ std::string pattern_of(std::string_view text) {
     if (close != std::string_view::npos) {
       pattern += "''";
       i = close;
+    } else if (has_numbers) {
+      pattern += text[i];
     } else if (is_digit(text[i])) {
       const std::size_t end = std::min(text.find_first_not_of("0123456789.e+-", i), text.size());
       pattern += '#';
@@ -50,12 +52,17 @@ bool Tally::take(const Message& message, double badness) {
     kind.worst = message;
   }
   if (kind.shown.size() < shown_of_a_kind) {
-    // Where there is no file yet, the place is not in the text.
-    std::string text = fmt::format("{}:{}: {}", message.place.line, message.place.column, to_string(message));
+    // Defects are shown yarn by yarn, of other messages those that differ in more than their names. Where
+    // there is no file yet, the place is not in the text.
+    const bool is_defect = message.severity == Severity::error || badness > 0;
+    std::string text = fmt::format("{}:{}: {}", message.place.line, message.place.column,
+                                   is_defect ? to_string(message) : pattern_of(message.text, true));
     if (std::find(kind.shown.begin(), kind.shown.end(), text) == kind.shown.end()) {
       kind.shown.push_back(std::move(text));
       return true;
     }
+    // What was said of all of them needs no number.
+    if (!is_defect && message.text == kind.worst.text) return false;
   }
   ++kind.hidden;
   return false;

@@ -15,8 +15,9 @@ class Tally {
   static constexpr std::size_t shown_of_a_kind = 20, most_kinds = 100;
 
   // Counts a message; true when it is to be shown: few of its kind were, and none that reads the same.
-  // Messages are of one kind when they differ in names in quotes, in numbers and in places only. `badness`
-  // says which one is the worst, the larger the worse (the depth of an overlap); 0: they cannot be compared.
+  // Messages are of one kind when they differ in names in quotes, in numbers and in places only; warnings and
+  // notes read the same when they differ in names only. `badness` says which one is the worst, the larger the
+  // worse (the depth of an overlap); 0: they cannot be compared.
   bool take(const Message& message, double badness = 0);
 
   // Of each kind that was not shown whole, one message: "x94, of which 74 are not shown; the worst: ...".

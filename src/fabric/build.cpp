@@ -152,6 +152,16 @@ double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& 
                                                          : 0;
 }
 
+// A yarn of more filaments than are built without being asked for.
+void note_whole(const Thread& thread, Detail detail, const Fabric& fabric, Diagnostics& diagnostics) {
+  if (detail != Detail::usual || thread.filaments.value_or(1) <= max_usual_filaments) return;
+  diagnostics.add(note(Kind::unsupported,
+                       fmt::format("the yarns of thread '{}' are built as a whole, not as {} filaments each; "
+                                   "'--detail filaments' builds every one",
+                                   thread.name, *thread.filaments))
+                      .placed(thread.place, fabric.file));
+}
+
 }  // namespace
 
 namespace {
@@ -214,6 +224,7 @@ void YarnBuilder::add_yarn(const Yarn& yarn, Diagnostics& diagnostics) {
   const std::uint64_t parts = path != nullptr ? part_count(thread, options_.detail) : 1;
   const std::uint64_t points = path != nullptr ? path->points.size() : 0;
   if (parts > 1 && !take_on(in_parts({1, points, 0}, parts), yarn.place, diagnostics)) return;
+  if (path != nullptr) note_whole(thread, options_.detail, *fabric_, diagnostics);
   Entry entry;
   entry.yarn = &yarn;
   add_entries(entry, parts);
@@ -236,6 +247,10 @@ void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr
   for (std::size_t i = 0; i < count; ++i)
     more += in_parts({1, plain.points / count, 0}, part_count(construction.thread(i), options_.detail) - 1);
   if (more.yarns > 0 && !take_on(more, place, diagnostics)) return;
+  std::set<const Thread*> seen;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const Thread& thread = construction.thread(i); seen.insert(&thread).second)
+      note_whole(thread, options_.detail, *fabric_, diagnostics);
   constructions_.push_back(std::make_unique<Made>(Made{std::move(*made), &item, place, kind, {}}));
   Entry entry;
   entry.made = constructions_.back().get();

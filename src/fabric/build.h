@@ -29,7 +29,7 @@ struct BuildOptions {
   // Control points of tubes with all digits of the computation; else on a decimal grid of at most 1e-4 of the
   // tolerance, so that texts of them are short.
   bool full_digits = false;
-  Detail detail = Detail::filaments;  // yarns are taken apart into plies and filaments as their threads say
+  Detail detail = Detail::usual;  // yarns are taken apart into plies and filaments as their threads say
   // Constructions exactly as their paper gives them, overlaps and all; else mended so that no yarns overlap.
   bool as_published = false;
   // Between the yarns of a construction, at least, file units; 0: its own share of their thickness (1 %,

@@ -14,7 +14,15 @@ struct Fibre {
 };
 
 std::span<const Fibre> all_fibres();
-// Null: there is none of that name.
+
+// Another name of a fibre, in lower-case letters and digits alone.
+struct FibreAlias {
+  std::string_view alias, name;
+};
+std::span<const FibreAlias> fibre_aliases();
+
+// By its name or an alias; letters of any case, with or without hyphens, blanks, points, `_`. Null: there is
+// none of that name.
 const Material* find_fibre(std::string_view name);
 
 }  // namespace selvage::fabric

@@ -24,7 +24,10 @@ std::uint64_t ply_count(const Thread& thread, Detail detail) {
   return detail != Detail::yarn && thread.plies ? static_cast<std::uint64_t>(thread.plies->count) : 1;
 }
 std::uint64_t filament_count(const Thread& thread, Detail detail) {
-  return detail == Detail::filaments ? static_cast<std::uint64_t>(thread.filaments.value_or(1)) : 1;
+  const int filaments = thread.filaments.value_or(1);
+  const bool are_built =
+      detail == Detail::filaments || (detail == Detail::usual && filaments <= max_usual_filaments);
+  return are_built ? static_cast<std::uint64_t>(filaments) : 1;
 }
 
 // Radians per file unit; Z is a right-handed helix.
@@ -215,12 +218,14 @@ Status Bundle::Content::lay_filaments() {
   if (!wanted) return {};
   const double largest = share_of(diameter);
   if (largest < share_kept * *wanted) {
-    messages.push_back(
-        warning(Kind::geometry, fmt::format("the {} filaments of yarn '{}' fill {:.3f} of its section, the "
-                                            "most that so many round ones do{}; "
-                                            "its packing is {:.3g}",
-                                            plies * filaments, parent.name, largest,
-                                            inclination > 0.0 ? " at this twist" : "", *wanted)));
+    messages.push_back(warning(
+        Kind::geometry,
+        fmt::format("the {} filaments of {} fill {:.3f} of its section, the largest fraction for this number "
+                    "of round filaments{}; its packing is {:.3g}",
+                    plies * filaments,
+                    parent.thread.name.empty() ? fmt::format("yarn '{}'", parent.name)
+                                               : fmt::format("each yarn of thread '{}'", parent.thread.name),
+                    largest, inclination > 0.0 ? " at this twist" : "", *wanted)));
   } else {
     diameter = std::min(diameter, diameter * std::sqrt(*wanted / largest));
   }

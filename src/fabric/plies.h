@@ -18,8 +18,9 @@
 
 namespace selvage::fabric {
 
-// How far yarns are taken apart.
-enum class Detail { yarn, plies, filaments };
+// How far yarns are taken apart. usual: into filaments where a single yarn has at most `max_usual_filaments`.
+enum class Detail { yarn, plies, usual, filaments };
+inline constexpr int max_usual_filaments = 300;
 
 // How many yarns a yarn of this thread becomes: 1 without plies and filaments. `filaments` counts those of
 // one single yarn: of each ply where there are plies.

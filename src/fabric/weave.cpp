@@ -119,7 +119,6 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   Result<WeaveFit> fit =
       fit_weave({&warp_, &weft_, &drawdown_, warp_bend_, weft_bend_}, clearance_, heights_at);
   const std::string_view unit = name_of(fabric_.units);
-  std::string remedies = "a larger pitch or narrower sections give it";
   const bool is_thin =
       fit && (!weave_.thickness || thickness_of(warp_, weft_, fit->heights) <= *weave_.thickness);
   LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
@@ -128,20 +127,22 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
     if (std::optional<PressedCloth> pressed = press_cloth(loose))
       return take(std::move(*pressed), diagnostics);
     if (weave_.thickness) return too_thick(std::move(loose));
-    if (!fit)
+    // Of yarns that overlap nothing is built: neither those that cross, nor neighbours of one system.
+    if (!fit || fit->gap <= 0.0 || is_over_dense())
       return error(Kind::geometry,
                    fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
                                "go, have no room to pass each other; {}",
                                remedies_for(loose)))
-          .placed(fit.error().place);
-    if (fit->gap <= 0.0) remedies = remedies_for(loose);
+          .placed(fit ? weave_.place : fit.error().place);
   }
   if (!fit) return fit.error();
   thinner_ = fit->thinner;
   if (fit->gap <= 0.0)
     warn(weave_.place,
-         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: {}",
-                     -fit->gap, unit, remedies),
+         fmt::format(
+             "yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: a larger "
+             "pitch or narrower sections give it",
+             -fit->gap, unit),
          diagnostics);
   else if (thinner_ > 0.0)
     warn(weave_.place,
@@ -154,8 +155,11 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
 // Yarns neither overlap nor are lifted off each other by their flanks.
 bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
   return fit && fit->gap > 0.0 &&
-         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
-         warp_.widest <= warp_.closest && weft_.widest <= weft_.closest;
+         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) && !is_over_dense();
+}
+
+bool WeaveConstruction::is_over_dense() const {
+  return warp_.widest > warp_.closest || weft_.widest > weft_.closest;
 }
 
 Message WeaveConstruction::too_thick(LooseCloth loose) const {

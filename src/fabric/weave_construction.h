@@ -101,6 +101,8 @@ class WeaveConstruction final : public Construction {
   Status plan_leno(YarnPlan& plan, bool is_weft, long long yarn) const;
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
   [[nodiscard]] bool has_room(const Result<WeaveFit>& fit) const;
+  // Neighbours of a system, side by side, overlap.
+  [[nodiscard]] bool is_over_dense() const;
   [[nodiscard]] Message too_thick(LooseCloth loose) const;
   [[nodiscard]] Heights take(PressedCloth pressed, Diagnostics& diagnostics);
   Status prepare_binders(Diagnostics& diagnostics);

@@ -232,14 +232,20 @@ std::string remedies_for(const LooseCloth& cloth) {
       "weft; or {}",
       percent, percent < 10.0 ? 1 : 0, rounded(*wider * warp_pitch, true), rounded(*wider * weft_pitch, true),
       thinner_threads(cloth, 1.0 / *wider));
-  if (const auto picks = least_factor(*wider, [&](double by) {
-        return has_room(cloth, {1.0, up(weft_pitch, by), 1.0});
-      }))
-    text += fmt::format("; or `pitch {:.6g}` for the weft alone", rounded(*picks * weft_pitch, true));
-  else if (const auto ends = least_factor(*wider, [&](double by) {
-             return has_room(cloth, {up(warp_pitch, by), 1.0, 1.0});
-           }))
-    text += fmt::format("; or `pitch {:.6g}` for the warp alone", rounded(*ends * warp_pitch, true));
+  // One system alone, the denser one if that is enough.
+  const auto alone = [&](bool is_warp) -> std::optional<std::string> {
+    const double pitch = is_warp ? warp_pitch : weft_pitch;
+    const auto factor = least_factor(*wider, [&](double by) {
+      return has_room(cloth, {is_warp ? up(pitch, by) : 1.0, is_warp ? 1.0 : up(pitch, by), 1.0});
+    });
+    if (!factor) return std::nullopt;
+    return fmt::format("; or `pitch {:.6g}` for the {} alone", rounded(*factor * pitch, true),
+                       is_warp ? "warp" : "weft");
+  };
+  const bool warp_is_denser = cloth.warp.widest * cloth.weft.closest > cloth.weft.widest * cloth.warp.closest;
+  std::optional<std::string> one = alone(warp_is_denser);
+  if (!one) one = alone(!warp_is_denser);
+  text += one.value_or("");
   return text;
 }
 

@@ -211,10 +211,12 @@ void of_yarns(OptionTable& t) {
            "how a yarn is sealed (default: as the input has it, else patch)", "patch fan planar none",
            &Options::ends,
            {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar, yarn::EndStyle::none});
-  t.choice(on_yarns, "--detail", "how far yarns are taken apart, where their threads say so",
-           "yarn plies filaments", &Options::detail,
-           {fabric::Detail::yarn, fabric::Detail::plies, fabric::Detail::filaments})
-      .with_preset("filaments");
+  t.choice(
+       on_yarns, "--detail",
+       "how far yarns are taken apart, where their threads say so; usual: into filaments up to 300 of them",
+       "yarn plies usual filaments", &Options::detail,
+       {fabric::Detail::yarn, fabric::Detail::plies, fabric::Detail::usual, fabric::Detail::filaments})
+      .with_preset("usual");
   t.choice(on_yarns, "--digits",
            "of the tubes' control points: as few as the tolerance needs, or all that the computation has",
            "short full", &Options::full_digits, {false, true})

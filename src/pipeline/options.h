@@ -117,12 +117,12 @@ struct Options {
   double tolerance = 0;        // input's unit; 0: the input's
   double chord = 0;            // of triangles, input's unit; 0: the tolerance
   bool full_digits = false;    // of the tubes' control points
-  fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
-  bool as_published = false;           // constructions as their paper gives them, overlaps and all
-  std::optional<yarn::EndStyle> ends;  // none: as the input has them, or patch
-  bool instances = false;              // repeat equal yarns by reference
-  bool lines = false;                  // centre lines instead of surfaces
-  OptionValues of_formats;             // what formats declare for themselves
+  fabric::Detail detail = fabric::Detail::usual;  // how far yarns are taken apart
+  bool as_published = false;                      // constructions as their paper gives them, overlaps and all
+  std::optional<yarn::EndStyle> ends;             // none: as the input has them, or patch
+  bool instances = false;                         // repeat equal yarns by reference
+  bool lines = false;                             // centre lines instead of surfaces
+  OptionValues of_formats;                        // what formats declare for themselves
 
   Elements elements = Elements::tetrahedra;
   double size = 0;          // wanted edge length, input's unit; 0: the mesher's choice

@@ -16,7 +16,7 @@ using namespace fabric;
 
 // A weave whose warp's pitch is the text.
 std::string pitch(const std::string& text, const std::string& head = "") {
-  return "fabric 1\n" + head + "thread t\ndiameter 0.01\nend\nweave\nwarp t 2 " + text +
+  return "fabric 1\n" + head + "thread t\ndiameter 20\nend\nweave\nwarp t 2 " + text +
          "\nweft t 2 pitch 1\ndraft plain\nend\n";
 }
 
@@ -102,7 +102,7 @@ TEST(Numbers, TellWhatIsWrong) {
   expect(pitch("pitch 2*(3"), "a bracket is not closed");
   expect(pitch("pitch 2*cm"), "a unit stands right behind its number, as in 3cm");
   expect("fabric 1\nthread t\nend\nweave\nwarp t 60/inch\nend\n",
-         "the number of yarns: '60/inch': so many on a length are a pitch, which does not belong here");
+         "the number of ends is missing in front of the pitch: write '8 60/inch' for 8 ends");
   expect(pitch("pitch 2+*3"), "does not belong there");
   expect(pitch("pitch 1,5"), "a decimal comma in '1,5'");
   expect(pitch("1", "param a b\nparam b a\n"), "'b' is not a number");

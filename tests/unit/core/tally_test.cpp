@@ -38,6 +38,21 @@ TEST(Tally, EqualOnesAreOne) {
   EXPECT_EQ(tally.rest().front().text, "x1000: needs more memory than there is");
 }
 
+// A warning of every yarn: the same words are one, others that differ in a name are one and their number.
+TEST(Tally, WarningsThatDifferInNamesAreOne) {
+  Tally same, named;
+  std::size_t shown = 0;
+  for (int i = 0; i < 12; ++i) {
+    shown += same.take(
+        warning(Kind::geometry, "the filaments of thread 'pa' fill 0.717").of_yarn(fmt::format("bar_{}", i)));
+    shown += named.take(warning(Kind::geometry, fmt::format("yarn 'bar_{}' is bent", i)));
+  }
+  EXPECT_EQ(shown, 2U);
+  EXPECT_TRUE(same.rest().empty());
+  ASSERT_EQ(named.rest().size(), 1U);
+  EXPECT_EQ(named.rest().front().text, "x12: yarn 'bar_0' is bent");
+}
+
 TEST(Tally, FewAreShownWhole) {
   Tally tally;
   for (std::size_t i = 0; i < Tally::shown_of_a_kind; ++i) {

@@ -1,0 +1,123 @@
+#include "formats/txt/trade_draft.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+
+#include "core/words.h"
+#include "formats/txt/words.h"
+
+namespace selvage::formats::txt {
+
+namespace {
+
+using Form = Draft::Form;
+
+constexpr int max_of_group = 50;  // yarns that go as one
+
+// Denton and Daniels, Textile Terms and Definitions, under each name.
+constexpr std::array<std::string_view, 11> plain_names = {"taffeta",    "poplin", "tabby", "calico",
+                                                          "broadcloth", "muslin", "voile", "canvas",
+                                                          "percale",    "1/1",    "1x1"};
+struct TwillName {
+  std::string_view name;
+  int over = 0, under = 0;
+  Hand hand = Hand::z;
+};
+constexpr std::array<TwillName, 5> twill_names = {{{"drill", 3, 1, Hand::s},
+                                                   {"denim", 3, 1, Hand::z},
+                                                   {"jean", 2, 1, Hand::z},
+                                                   {"serge", 2, 2, Hand::z},
+                                                   {"batavia", 2, 2, Hand::z}}};
+
+// A and B of `AxB`, `A/B`.
+std::optional<std::array<int, 2>> pair_of(std::string_view text, char sign) {
+  std::array<int, 2> pair{};
+  const auto [first, failure] = std::from_chars(text.data(), text.data() + text.size(), pair[0]);
+  const char* const end = text.data() + text.size();
+  if (failure != std::errc{} || first == end || lower(*first) != sign) return std::nullopt;
+  const auto [second, other] = std::from_chars(first + 1, end, pair[1]);
+  if (other != std::errc{} || second != end || pair[0] < 1 || pair[1] < 1) return std::nullopt;
+  return pair;
+}
+
+// Plain weave of groups: so many ends by so many picks go as one.
+void make_groups(Draft& draft, int ends, int picks) {
+  draft.form = Form::rows;
+  const std::string one(static_cast<std::size_t>(ends), '1'), other(static_cast<std::size_t>(ends), '0');
+  draft.rows.insert(draft.rows.end(), static_cast<std::size_t>(picks), one + other);
+  draft.rows.insert(draft.rows.end(), static_cast<std::size_t>(picks), other + one);
+}
+
+std::string make_twill(Draft& draft, int over, int under, Hand hand) {
+  draft.form = Form::twill;
+  draft.a = over;
+  draft.b = under;
+  draft.hand = hand;
+  return fmt::format("twill {}/{} {}", over, under, word_of(hand_words, hand));
+}
+
+// `5HS`, `8-harness`.
+std::optional<int> harness_satin(std::string_view word) {
+  int shafts = 0;
+  const auto [stop, failure] = std::from_chars(word.data(), word.data() + word.size(), shafts);
+  if (failure != std::errc{}) return std::nullopt;
+  std::string_view name(stop, static_cast<std::size_t>(word.data() + word.size() - stop));
+  if (name.starts_with("-")) name.remove_prefix(1);
+  const bool is_satin = same_word(name, "HS") || same_word(name, "harness") || same_word(name, "H");
+  return is_satin && shafts >= 4 && shafts <= 100 ? std::optional(shafts) : std::nullopt;
+}
+
+std::string groups_text(const std::array<int, 2>& pair) {
+  return fmt::format("{} ends x {} picks as one", pair[0], pair[1]);
+}
+
+}  // namespace
+
+std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.empty() || words.size() > 2) return std::nullopt;
+  const std::string_view first = words.front(), last = words.back();
+  const auto is = [](std::string_view word, std::string_view name) { return same_word(word, name); };
+  if (words.size() == 1) {
+    for (const std::string_view name : plain_names)
+      if (is(first, name)) return draft.form = Form::plain, std::string();
+    for (const TwillName& twill : twill_names)
+      if (is(first, twill.name)) return make_twill(draft, twill.over, twill.under, twill.hand);
+    if (is(first, "oxford")) return make_groups(draft, 2, 1), groups_text({2, 1});
+    if (is(first, "hopsack") || is(first, "panama")) return make_groups(draft, 2, 2), groups_text({2, 2});
+    if (const auto pair = pair_of(first, '/')) return make_twill(draft, (*pair)[0], (*pair)[1], Hand::z);
+  }
+  // `twill 2x2`, `2x2 twill`.
+  const bool twill_first = is(first, "twill"), twill_last = is(last, "twill");
+  if (words.size() == 2 && twill_first != twill_last)
+    if (const auto pair = pair_of(twill_first ? last : first, 'x')) {
+      make_twill(draft, (*pair)[0], (*pair)[1], Hand::z);
+      return std::string();
+    }
+  if (words.size() == 2 && twill_last)
+    if (const auto pair = pair_of(first, '/'))
+      return make_twill(draft, (*pair)[0], (*pair)[1], Hand::z), std::string();
+  // `basket 2x1`, `2x1`, `2x1 basket`.
+  const bool is_basket = words.size() == 1 || is(first, "basket") != is(last, "basket");
+  if (is_basket)
+    if (const auto pair = pair_of(words.size() == 2 && is(first, "basket") ? last : first, 'x')) {
+      if ((*pair)[0] > max_of_group || (*pair)[1] > max_of_group) return std::nullopt;
+      make_groups(draft, (*pair)[0], (*pair)[1]);
+      return words.size() == 2
+                 ? std::string()
+                 : groups_text(*pair) + fmt::format("; a twill is `twill {}/{}`", (*pair)[0], (*pair)[1]);
+    }
+  // `5HS`, `5HS satin`, `crowfoot`.
+  const auto shafts = is(first, "crowfoot") ? std::optional(4) : harness_satin(first);
+  if (shafts && (words.size() == 1 || is(last, "satin"))) {
+    draft.form = Form::satin;
+    draft.a = *shafts;
+    draft.b = 0;
+    return fmt::format("satin {} (weft-faced, as `satin` is without a word)", *shafts);
+  }
+  return std::nullopt;
+}
+
+}  // namespace selvage::formats::txt

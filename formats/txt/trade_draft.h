@@ -1,0 +1,17 @@
+// Drafts by the names that the trade has for them beside plain, twill, satin and basket.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "fabric/model.h"
+
+namespace selvage::formats::txt {
+
+// `oxford`, `basket 2x1`, `2x2`, `drill`, `taffeta`, `1/1`, `twill 2x2`, `5HS`, ...: fills the draft, and
+// gives what it was understood as; empty: the name has one meaning. None: it is no such name. `text`: what
+// follows `draft`.
+std::optional<std::string> draft_of_trade(std::string_view text, fabric::Draft& draft);
+
+}  // namespace selvage::formats::txt

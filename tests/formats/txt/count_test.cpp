@@ -1,0 +1,111 @@
+// Yarn counts as the trades write them, against values computed here.
+#include <gtest/gtest.h>
+
+#include "formats/txt/reading.h"
+
+namespace selvage::test {
+
+namespace {
+
+using namespace fabric;
+
+Reading thread_with(const std::string& lines, const std::string& head = "") {
+  return read("fabric 1\n" + head + "thread t\n" + lines + "\nmaterial polyester\nend\n");
+}
+
+double tex_of(const std::string& line, const std::string& head = "") {
+  const Reading reading = thread_with(line, head);
+  EXPECT_TRUE(reading.fabric) << line << "\n" << reading.text();
+  if (!reading.fabric) return 0;
+  return reading.fabric->threads.at(0).linear_density->tex();
+}
+
+std::string messages_of(const std::string& lines, const std::string& head = "") {
+  return thread_with(lines, head).text();
+}
+
+constexpr double tex_of_ne1 = 590.5412;
+
+}  // namespace
+
+TEST(YarnCount, IndirectSystemsHaveTheirPliesOnEitherSide) {
+  for (const std::string text :
+       {"Ne 30/2", "Ne 2/30", "Ne 30s/2", "Ne 2/30s", "30/2 Ne", "Ne30/2", "Ne 30x2", "Ne 30 x 2"})
+    EXPECT_NEAR(tex_of(text), tex_of_ne1 / 15, 1e-3) << text;
+  for (const std::string text : {"Nm 2/60", "Nm 60/2", "nm 60 / 2", "2/60 Nm"})
+    EXPECT_NEAR(tex_of(text), 1000.0 / 30, 1e-9) << text;
+  EXPECT_NEAR(tex_of("Ne 60/2/2"), tex_of_ne1 / 15, 1e-3);
+  EXPECT_NEAR(tex_of("Nm 2/28.5"), 2000.0 / 28.5, 1e-9);
+  EXPECT_NEAR(tex_of("Nm 40/1"), 25, 1e-9);
+}
+
+TEST(YarnCount, DirectSystemsHaveFilamentsAndPlies) {
+  for (const std::string text : {"dtex 167/48", "dtex 167 f48", "dtex 167f48", "dtex 167 f 48",
+                                 "167 dtex f48", "167f48 dtex", "dtex 167/f48", "dtex 167/48f"}) {
+    EXPECT_NEAR(tex_of(text), 16.7, 1e-12) << text;
+    EXPECT_NE(messages_of(text).find("note: understood as 167 dtex, 48 filaments"), std::string::npos)
+        << messages_of(text);
+  }
+  for (const std::string text :
+       {"dtex 1400/2", "1400x2 dtex", "dtex 1400 x2", "2x1400 dtex", "1400 dtex x 2", "dtex 1400/1/2"})
+    EXPECT_NEAR(tex_of(text), 280, 1e-9) << text;
+  EXPECT_NE(messages_of("dtex 1400/2").find("2 plies of 1400 dtex; 2800 dtex in all"), std::string::npos);
+  for (const std::string text : {"tex 20x2", "20 tex x 2", "tex 20 X 2", "tex 20 \xC3\x97 2", "R 40 tex/2",
+                                 "R40 tex/2", "20 tex x 2 R 40 tex", "tex 20/2"})
+    EXPECT_NEAR(tex_of(text), 40, 1e-12) << text;
+  for (const std::string text : {"denier 1000/2", "1000D/2", "Td 1000/2", "1000 den x2"})
+    EXPECT_NEAR(tex_of(text), 2000.0 / 9, 1e-9) << text;
+  for (const std::string text : {"dtex 167 f48 x2", "dtex 167/48/2", "167 dtex f48 x 2"})
+    EXPECT_NEAR(tex_of(text), 33.4, 1e-12) << text;
+  EXPECT_NEAR(tex_of("denier 150/48/2"), 300.0 / 9, 1e-12);
+  EXPECT_NEAR(tex_of("denier 210/2/3"), 1260.0 / 9, 1e-12);
+  EXPECT_NEAR(tex_of("denier 68/24f"), 68.0 / 9, 1e-12);
+}
+
+// The border of the rule: 9 are plies, 10 are filaments.
+TEST(YarnCount, AboveNineAreFilaments) {
+  EXPECT_NEAR(tex_of("dtex 100/9"), 90, 1e-9);
+  EXPECT_NEAR(tex_of("dtex 100/10"), 10, 1e-12);
+}
+
+TEST(YarnCount, RawSilkHasARange) {
+  EXPECT_NEAR(tex_of("denier 20/22"), 21.0 / 9, 1e-12);
+  EXPECT_NEAR(tex_of("Td 13/15"), 14.0 / 9, 1e-12);
+  EXPECT_NEAR(tex_of("denier 40/44"), 42.0 / 9, 1e-12);
+  EXPECT_NEAR(tex_of("denier 20/24"), 20.0 / 9, 1e-12);  // 24 filaments
+  EXPECT_NEAR(tex_of("denier 70/72"), 70.0 / 9, 1e-12);
+  EXPECT_NE(messages_of("denier 20/22").find("raw silk"), std::string::npos);
+}
+
+TEST(YarnCount, ExpressionsNeedBrackets) {
+  EXPECT_NEAR(tex_of("dtex (100+67)"), 16.7, 1e-12);
+  EXPECT_NEAR(tex_of("dtex (100+67) f48"), 16.7, 1e-12);
+  EXPECT_NEAR(tex_of("dtex count", "param count 167\n"), 16.7, 1e-12);
+  EXPECT_NEAR(tex_of("dtex count f48", "param count 167\n"), 16.7, 1e-12);
+  for (const std::string text : {"dtex 1400*2", "dtex 100+67", "tex 20.5/2.5"})
+    EXPECT_NE(messages_of(text).find("needs brackets"), std::string::npos) << messages_of(text);
+  EXPECT_NE(messages_of("dtex count/2", "param count 167\n").find("needs brackets: (count/2)"),
+            std::string::npos);
+}
+
+TEST(YarnCount, SaysWhatIsWrong) {
+  EXPECT_NE(messages_of("dtex 167/48/72").find("both are numbers of filaments"), std::string::npos);
+  EXPECT_NE(messages_of("dtex 167 48").find("joined"), std::string::npos);
+  EXPECT_NE(messages_of("dtex 167 den").find("another system"), std::string::npos);
+  EXPECT_NE(messages_of("dtex 167/").find("missing"), std::string::npos);
+  EXPECT_NE(messages_of("tex 20 Z 660").find("twist 660 Z"), std::string::npos);
+  EXPECT_NE(messages_of("tex 20\n1400x2 dtex").find("given twice"), std::string::npos);
+}
+
+TEST(YarnCount, AgreesWithPliesAndFilaments) {
+  EXPECT_NE(messages_of("Ne 30/2\nplies 3 400 S").find("2 plies"), std::string::npos);
+  EXPECT_NE(messages_of("filaments 24\ndtex 167 f48").find("48 filaments"), std::string::npos);
+  const Reading good = thread_with("dtex 167 f48 x2\nfilaments 48\nplies 2 400 S");
+  ASSERT_TRUE(good.fabric) << good.text();
+  EXPECT_NEAR(good.fabric->threads.at(0).linear_density->tex(), 33.4, 1e-12);
+  // The number of filaments of a count builds none; one filament is a monofilament.
+  EXPECT_EQ(thread_with("dtex 167 f48").fabric->threads.at(0).filaments, std::nullopt);
+  EXPECT_EQ(thread_with("dtex 100 f1").fabric->threads.at(0).filaments, 1);
+}
+
+}  // namespace selvage::test
