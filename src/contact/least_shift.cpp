@@ -31,7 +31,7 @@ std::optional<Vec3> least_shift(const std::vector<ShiftDemand>& demands) {
   for (const ShiftDemand& demand : demands) largest = std::max(largest, demand.distance);
   const auto meets_all = [&](const Vec3& t) {
     return std::all_of(demands.begin(), demands.end(),
-                       [&](const ShiftDemand& d) { return d.normal.dot(t) >= d.distance - 1e-7 * largest; });
+                       [&](const ShiftDemand& d) { return d.normal.dot(t) >= d.distance - 1e-10 * largest; });
   };
   std::optional<Vec3> best;
   const auto consider = [&](const std::array<const ShiftDemand*, 3>& active, int count) {

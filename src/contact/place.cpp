@@ -422,7 +422,7 @@ class Measurer {
     for (const Spot& spot : spots)
       if (spot.depth > touching_) demands.push_back({spot.normal, spot.depth});
     std::optional<Vec3> shift = least_shift(demands);
-    for (int round = 0; round < 6 && shift; ++round) {
+    for (int round = 0; round < 20 && shift; ++round) {
       for (std::size_t k = 0; k < demands.size(); ++k) {
         const Spot& spot = spots[k];
         if (!spot.is_critical) continue;
@@ -432,7 +432,7 @@ class Measurer {
           demands[k] = {found->normal, found->depth + found->normal.dot(*shift)};
       }
       const std::optional<Vec3> next = least_shift(demands);
-      const bool settled = next && (*next - *shift).norm() < 1e-5 * shift->norm();
+      const bool settled = next && (*next - *shift).norm() < 1e-10 * shift->norm();
       shift = next;
       if (settled) break;
     }

@@ -141,7 +141,7 @@ std::vector<Message> complete(Mesh& mesh, const Block& block, int order) {
       if (places[k].body == body) known[k] = places[k].parameters.y();
     const std::vector<double> along =
         parameters_along(mesh, mesh.regions[r], block.bodies[body], known, scale);
-    add_fibres(mesh, mesh.regions[r], block.bodies[body], along);
+    add_fibres(mesh, mesh.regions[r], block.bodies[body], along, scale);
   }
   if (order == 1) return {};
   const MidsideNodes nodes = add_midside_nodes(mesh, block);

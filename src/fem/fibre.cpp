@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numbers>
 
 #include "fem/quality.h"
 #include "nurbs/divided.h"
@@ -90,9 +91,10 @@ struct Axes {
   Vec3 along, across;
 };
 
-Axes axes_at(const yarn::Body& body, double t) {
+// At the parameter of the centre line nearest to a point.
+Axes axes_at(const yarn::Body& body, double t, const Vec3& point) {
   const nurbs::CurveJet jet = nurbs::evaluate_jet(body.axis, t);
-  const Vec3 along = jet.d1.normalized();
+  const Vec3 along = fibre_direction(body, jet.d1.normalized(), point - jet.position);
   const Vec3 seam = nurbs::evaluate(body.surface, body.surface.first_u(), t) - jet.position;
   const Vec3 level = seam - along * along.dot(seam);
   return {along, level.norm() > 1e-9 * seam.norm() ? Vec3(level.normalized()) : Vec3(along.unitOrthogonal())};
@@ -142,8 +144,13 @@ void settle_parameters(const Mesh& mesh, const Region& region, const yarn::Body&
     parameters[i] = nearest_parameter(body, middle_of(mesh, region.first_element + i) / unit, parameters[i]);
 }
 
-void add_fibres(Mesh& mesh, const Region& region, const yarn::Body& body,
-                std::span<const double> parameters) {
+Vec3 fibre_direction(const yarn::Body& body, const Vec3& tangent, const Vec3& off) {
+  if (body.twist == 0) return tangent;
+  return (tangent + 2 * std::numbers::pi * body.twist * tangent.cross(off)).normalized();
+}
+
+void add_fibres(Mesh& mesh, const Region& region, const yarn::Body& body, std::span<const double> parameters,
+                double unit) {
   if (mesh.along.size() < mesh.elements.size()) {
     mesh.along.resize(mesh.elements.size(), Vec3::UnitX());
     mesh.across.resize(mesh.elements.size(), Vec3::UnitY());
@@ -152,7 +159,7 @@ void add_fibres(Mesh& mesh, const Region& region, const yarn::Body& body,
   Areas areas(body);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::size_t e = region.first_element + i;
-    const Axes axes = axes_at(body, parameters[i]);
+    const Axes axes = axes_at(body, parameters[i], middle_of(mesh, e) / unit);
     mesh.along[e] = axes.along;
     mesh.across[e] = axes.across;
     mesh.fibre_fraction[e] = body.fibre_area > 0 ? body.fibre_area / areas.at(parameters[i]) : unknown;

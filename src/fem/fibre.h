@@ -22,11 +22,18 @@ std::vector<double> parameters_along(const Mesh& mesh, const Region& region, con
 void settle_parameters(const Mesh& mesh, const Region& region, const yarn::Body& body,
                        std::span<double> parameters, double unit);
 
+// Unit direction of a yarn's fibres at a place `off` its centre line (file units) whose unit tangent is
+// `tangent`: the helix of Body::twist, inclined by atan(2 pi r twist) at a radius r; Z (positive) is
+// right-handed.
+Vec3 fibre_direction(const yarn::Body& body, const Vec3& tangent, const Vec3& off);
+
 // Fills Mesh::along, across and fibre_fraction (resized where they are too short: x, y and 0, as in a matrix)
-// of the region's elements. along: the centre line's unit tangent at the parameter; across: from the centre
+// of the region's elements. along: fibre_direction at the element's middle; across: from the centre
 // line towards the section's seam (on a section with axes along its width), perpendicular to `along`, unit.
-// The fraction is the yarn's fibre area (Body::fibre_area) by the area of its B-spline section there.
-void add_fibres(Mesh& mesh, const Region& region, const yarn::Body& body, std::span<const double> parameters);
+// `unit`: as above. The fraction is the yarn's fibre area (Body::fibre_area) by the area of its B-spline
+// section there.
+void add_fibres(Mesh& mesh, const Region& region, const yarn::Body& body, std::span<const double> parameters,
+                double unit);
 
 // Area across the centre line of the B-spline section at v, file units squared.
 double section_area(const yarn::Body& body, double v);

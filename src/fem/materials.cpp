@@ -45,6 +45,28 @@ Orthotropic orthotropic(const fabric::Material& material) {
 
 namespace {
 
+// Constants a thousand times too small: moduli are in MPa. Below these no solid of the trade is: what is
+// softer than plastics is rubber, whose volume hardly changes.
+std::optional<Message> gigapascals(const fabric::Material& material) {
+  constexpr double softest_plastic = 100, softest_fibre = 1000, rubber = 0.45;
+  const char* what = nullptr;
+  double modulus = 0;
+  if (const auto* same = std::get_if<fabric::IsotropicElastic>(&material.elastic);
+      same != nullptr && same->modulus < softest_plastic && same->poisson < rubber) {
+    what = "E";
+    modulus = same->modulus;
+  } else if (const auto* two = std::get_if<fabric::TransverseElastic>(&material.elastic);
+             two != nullptr && two->e1 < softest_fibre && two->nu12 < rubber) {
+    what = "E1";
+    modulus = two->e1;
+  }
+  if (what == nullptr) return std::nullopt;
+  return warning(
+      Kind::unsupported,
+      fmt::format("material '{0}' has {1} = {2:g} MPa: moduli are in MPa; if {2:g} GPa is meant, write {3:g}",
+                  material.name, what, modulus, 1000 * modulus));
+}
+
 // Adds a material to those in use, with elastic constants, unless it is there.
 void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice& choice,
          Diagnostics& diagnostics) {
@@ -58,6 +80,8 @@ void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice
                             material.name))
             .placed(material.place, fabric.file));
   }
+  if (std::optional<Message> soft = gigapascals(material))
+    diagnostics.add(std::move(*soft).placed(material.place, fabric.file));
   choice.materials.push_back(std::move(material));
 }
 

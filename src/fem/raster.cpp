@@ -199,7 +199,7 @@ class YarnShares {
 // Places along a yarn, close to each other: which way it runs, and the share of fibres in it.
 class AxisTable {
  public:
-  AxisTable(const yarn::Body& body, double step) : is_ring_(body.closed_along) {
+  AxisTable(const yarn::Body& body, double step) : body_(body), is_ring_(body.closed_along) {
     const std::vector<double> breaks = nurbs::breakpoints(body.surface.knots_v, body.surface.degree_v);
     vs_ = nurbs::divided(breaks, [&](std::size_t k) {
       const double length =
@@ -246,7 +246,9 @@ class AxisTable {
     const std::size_t other = ahead > 0 ? after(k) : before(k);
     const double length = (points_[other] - points_[k]).norm();
     const double share = length > 0 ? std::clamp(std::abs(ahead) / length, 0.0, 1.0) : 0;
-    return {unit_or_zero((1 - share) * tangents_[k] + share * tangents_[other]),
+    const Vec3 foot = (1 - share) * points_[k] + share * points_[other];
+    return {fibre_direction(body_, unit_or_zero((1 - share) * tangents_[k] + share * tangents_[other]),
+                            point - foot),
             fractions_[std::min(k / every, fractions_.size() - 1)]};
   }
 
@@ -265,6 +267,7 @@ class AxisTable {
   }
 
   static constexpr std::size_t every = 8;  // the sections change slowly
+  const yarn::Body& body_;
   bool is_ring_;
   std::vector<double> vs_;
   std::vector<Vec3> points_, tangents_;

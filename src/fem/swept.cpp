@@ -277,7 +277,7 @@ void append(Mesh& mesh, const Sweep& sweep, double scale) {
   region.exact_volume = body.volume * scale * scale * scale;
   region.length = body.length * scale;
   add_faces(sweep, region.first_node, region);
-  add_fibres(mesh, region, body, along);
+  add_fibres(mesh, region, body, along, scale);
 }
 
 // Of a measured mesh: the first element that is turned inside out, somewhere.

@@ -164,7 +164,7 @@ void fill_regions(Mesh& mesh, const VoxelGrid& grid, const ObliqueAxes& axes, co
     std::vector<double> parameters;
     for (const std::size_t voxel : of_yarn[b]) parameters.push_back(owners.v[voxel]);
     settle_parameters(mesh, region, bodies[b], parameters, unit);
-    add_fibres(mesh, region, bodies[b], parameters);
+    add_fibres(mesh, region, bodies[b], parameters, unit);
   }
 }
 

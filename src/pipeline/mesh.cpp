@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "fem/beams.h"
+#include "fem/fibre.h"
 #include "fem/mesher.h"
 #include "fem/swept.h"
 #include "pipeline/mesh_facts.h"
@@ -50,6 +52,13 @@ fem::MeshOptions mesh_options(Job& job) {
   return options;
 }
 
+std::optional<std::vector<yarn::Body>> bodies_to_mesh(Job& job, const fabric::YarnBuilder& builder) {
+  std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  if (bodies && job.options.ignores_twist)
+    for (yarn::Body& body : *bodies) body.twist = 0;
+  return bodies;
+}
+
 namespace {
 
 // Elements fill yarns; a garment piece is flat. False: it was said which piece is there.
@@ -65,7 +74,7 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
 
 std::optional<MadeMesh> mesh_of_yarns(Job& job, const fabric::Fabric& fabric,
                                       const fabric::YarnBuilder& builder, Diagnostics& diagnostics) {
-  const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  const std::optional<std::vector<yarn::Body>> bodies = bodies_to_mesh(job, builder);
   const auto finish = [&job](Message& message) { add_remedy(job.options, message); };
   if (!bodies || !check_overlaps(job, *bodies, finish)) return std::nullopt;
   if (job.options.elements == Elements::hexahedra)
@@ -108,10 +117,35 @@ void take(Job& job, MadeMesh made, Meshes& all) {
   all.mesh = std::move(*made.mesh);
 }
 
+// A beam has one modulus along it, which is that of straight fibres.
+void warn_of_twist(Job& job, const fabric::Fabric& fabric, const std::vector<yarn::Body>& bodies) {
+  double steepest = 0;
+  const yarn::Body* worst = nullptr;
+  for (const yarn::Body& body : bodies) {
+    // Of a round section as large as the first one.
+    const double radius = std::sqrt(fem::section_area(body, body.surface.first_v()) / std::numbers::pi);
+    const double tangent = 2 * std::numbers::pi * std::abs(body.twist) * radius;
+    if (tangent <= steepest) continue;
+    steepest = tangent;
+    worst = &body;
+  }
+  constexpr double least = 0.05;  // cos^4 is 0.995
+  if (steepest < least) return;
+  job.say(
+      warning(
+          Kind::geometry,
+          fmt::format(
+              "the fibres of yarn '{}' lie at {:.3g} degrees on its outside, and its beams are as stiff as "
+              "if they ran along it: solid elements follow them, and --twist ignore leaves the twist out",
+              worst->name, std::atan(steepest) * 180 / std::numbers::pi))
+          .placed(worst->place, fabric.file));
+}
+
 // Beams of yarns that overlap are fine: they have no volume to share.
 void make_beams(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder, Meshes& all) {
-  const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  const std::optional<std::vector<yarn::Body>> bodies = bodies_to_mesh(job, builder);
   if (!bodies) return;
+  warn_of_twist(job, fabric, *bodies);
   Diagnostics diagnostics;
   Result<fem::BeamModel> beams = fem::make_beams(fabric, *bodies, fabric.units,
                                                  {.size = job.options.size,

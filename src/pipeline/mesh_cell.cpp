@@ -21,10 +21,17 @@ bool is_bent(const Options& options, const ReadyCell& ready) {
          (kind == fem::CellKind::beam || (kind == fem::CellKind::plate && options.matrix));
 }
 
+// Its stiffness is wanted: of a block, or of a beam or a plate.
+bool is_strained(const Options& options, const ReadyCell& ready) {
+  return is_bent(options, ready) ||
+         (options.physics == fem::Physics::elastic && !options.pores && options.matrix &&
+          fem::kind_of_cell(ready.periodic) == fem::CellKind::block);
+}
+
 // Of the elements.
 int order_of(const Options& options, const ReadyCell& ready) {
   if (options.order > 0) return options.order;
-  return options.joining != fem::Joining::cohesive && is_bent(options, ready) ? 2 : 1;
+  return options.joining != fem::Joining::cohesive && is_strained(options, ready) ? 2 : 1;
 }
 
 }  // namespace
@@ -32,7 +39,7 @@ int order_of(const Options& options, const ReadyCell& ready) {
 std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
   const Options& options = job.options;
   if (options.periodic) snap_cell(job, fabric, builder);
-  std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  std::optional<std::vector<yarn::Body>> bodies = bodies_to_mesh(job, builder);
   if (!bodies) return std::nullopt;
   ReadyCell ready;
   ready.bodies = yarns_in_cell(job, fabric, std::move(*bodies));
@@ -55,23 +62,47 @@ std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fa
 
 namespace {
 
-// Bending is a quadratic displacement, which elements of order 1 follow by shearing.
-void say_what_bending_costs(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready) {
-  if (!is_bent(job.options, ready)) return;
+// What elements of order 1 cost. Bending is a quadratic displacement, which they follow by shearing.
+void warn_of_stiff_elements(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready) {
+  if (!is_strained(job.options, ready)) return;
+  const bool is_voxel = job.options.voxels > 0;
+  if (!is_voxel && order_of(job.options, ready) == 2) return;
+  const auto warn = [&](std::string text) {
+    job.say(at_cell(fabric, warning(Kind::geometry, std::move(text))));
+  };
+  if (is_bent(job.options, ready)) {
+    const char* what = fem::beam_axis(ready.periodic) ? "beam" : "plate";
+    warn(is_voxel
+             ? fmt::format("hexahedra of eight nodes make a {} too stiff in bending, the more the fewer "
+                           "of them lie over its thickness: compare two of --voxel, or mesh it with "
+                           "tetrahedra",
+                           what)
+             : fmt::format("tetrahedra of four nodes make a {0} too stiff in bending, by a fifth to a "
+                           "third at usual sizes: --order 2, the default of {0}s, is right to a per cent",
+                           what));
+  } else if (!is_voxel) {
+    warn(
+        "tetrahedra of four nodes make a cell too stiff, by 2 to 5 % at usual sizes: --order 2, the default "
+        "of cells "
+        "with a matrix, is right to a few thousandths");
+  }
+}
+
+// Elements of order 1 lock where the material keeps its volume.
+void warn_of_locking(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready, const fem::Mesh& mesh) {
+  constexpr double locking = 0.49;  // Poisson's ratio
   if (job.options.voxels == 0 && order_of(job.options, ready) == 2) return;
-  const char* what = fem::beam_axis(ready.periodic) ? "beam" : "plate";
-  job.say(at_cell(
-      fabric,
-      warning(
-          Kind::geometry,
-          job.options.voxels > 0
-              ? fmt::format("hexahedra of eight nodes make a {} too stiff in bending, the more the fewer "
-                            "of them lie over its thickness: compare two of --voxel, or mesh it with "
-                            "tetrahedra",
-                            what)
-              : fmt::format("tetrahedra of four nodes make a {0} too stiff in bending, by a fifth to a "
-                            "third at usual sizes: --order 2, the default of {0}s, is right to a per cent",
-                            what))));
+  for (const fabric::Material& material : mesh.materials)
+    if (const auto* same = std::get_if<fabric::IsotropicElastic>(&material.elastic);
+        same != nullptr && same->poisson >= locking)
+      job.say(warning(Kind::geometry,
+                      fmt::format(
+                          "material '{}' has nu = {:g}: {} lock from {:g} on and are far too stiff; mesh "
+                          "the cell with tetrahedra of --order 2",
+                          material.name, same->poisson,
+                          job.options.voxels > 0 ? "hexahedra of eight nodes" : "tetrahedra of four nodes",
+                          locking))
+                  .placed(material.place, fabric.file));
 }
 
 Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
@@ -105,8 +136,9 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
 
 MadeMesh mesh_of_cell(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
                       Diagnostics& diagnostics) {
-  say_what_bending_costs(job, fabric, ready);
+  warn_of_stiff_elements(job, fabric, ready);
   MadeMesh made{mesh_of(job, fabric, ready, diagnostics)};
+  if (made.mesh) warn_of_locking(job, fabric, ready, *made.mesh);
   if (job.options.voxels == 0) made.estimate = ready.size.tetrahedra;
   if (made.mesh && job.options.chamis)
     if (Status derived = fem::derive_yarn_stiffness(*made.mesh, diagnostics); !derived)

@@ -15,6 +15,10 @@ namespace selvage::pipeline {
 // yarn.
 fem::MeshOptions mesh_options(Job& job);
 
+// All yarns, as `mesh` takes them: with --twist ignore their fibres run along them. Nothing: one cannot be
+// built (it was said).
+std::optional<std::vector<yarn::Body>> bodies_to_mesh(Job& job, const fabric::YarnBuilder& builder);
+
 // A mesh and, of a unit cell in tetrahedra, how many of them were expected.
 struct MadeMesh {
   Result<fem::Mesh> mesh;

@@ -331,9 +331,9 @@ void of_a_mesh(OptionTable& t) {
            Argument::positive(), &Options::size)
       .goes_with(of_tetrahedra, "", "--voxel");
   t.option({mesh}, "--order",
-           "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 of a cell that is periodic along one "
-           "axis, a beam, and with --matrix along x and y only, a plate, which bend, if not --interface "
-           "cohesive)",
+           "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 of a periodic cell with --matrix, and "
+           "of one that is "
+           "periodic along one axis, if not --interface cohesive)",
            Argument::one_of("1 2"), &Options::order)
       .goes_with(of_tetrahedra, "", "--voxel", "2");
   t.option({mesh}, "--min-dihedral",
@@ -439,6 +439,12 @@ void of_a_cell(OptionTable& t) {
        {fem::Physics::elastic, fem::Physics::conduction, fem::Physics::diffusion, fem::Physics::permittivity})
       .goes_with("is of a unit cell", "--matrix --periodic --cut --voxel", "--yarn-stiffness")
       .with_preset("elastic");
+  t.choice({mesh}, "--twist",
+           "follow: the fibres of a thread with a twist lie on helices round its middle, and so do the axes "
+           "of its "
+           "stiffness; ignore: they run along the yarn",
+           "follow ignore", &Options::ignores_twist, {false, true})
+      .with_preset("follow");
   t.choice({mesh}, "--yarn-stiffness",
            "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
            "from the local fibre fraction by Chamis's formulas",

@@ -144,7 +144,8 @@ struct Options {
   double matrix_size = 0;      // to which edges may grow away from the yarns, input's unit; 0: size
   bool bond = false;           // yarns in contact share faces, instead of a gap filled with matrix
   fem::Joining joining = fem::Joining::bonded;  // of regions where they meet
-  int voxels = 0;       // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
+  int voxels = 0;              // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
+  bool ignores_twist = false;  // of fibres, in meshes: they run along the yarn
   bool chamis = false;  // stiffness of yarns from that of their fibres (Chamis), not as their material says
   fem::Physics physics = fem::Physics::elastic;  // of the deck
   bool force = false;  // go on where the estimate, or a gap, says that it is not worth it

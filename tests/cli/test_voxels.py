@@ -136,6 +136,26 @@ class Voxels(Case):
                 self.assertGreater(max(mean[0], mean[1]), 0.9)
                 self.assertLess(min(mean[0], mean[1]), 1e-3)
 
+    def test_fibres_follow_the_twist(self):
+        """A straight yarn along x: away from its middle they are inclined by the radius times the turns."""
+        text = (
+            "fabric 1\nmaterial m\n  elastic isotropic 3000 0.35\nend\nthread t\n  diameter 0.8\n  twist 400 {}\n  material m\nend\n"
+            "yarn a t\n  path\n    -0.5 0.5 0.5\n    1.5 0.5 0.5\n  end\nend\ncell 0 0 0  1 1 1\n  matrix m\nend\n"
+        )
+        source = self.folder / "twisted.txt"
+        for hand, sign, options in (("Z", 1, ()), ("S", -1, ()), ("Z", 0, ("--twist", "ignore"))):
+            source.write_text(text.format(hand))
+            npz = self.folder / "twisted.npz"
+            self.succeeds("mesh", source, "--voxel", "20", "-o", npz, *options)
+            with np.load(npz) as arrays:
+                inside = arrays["yarn_fraction"] > 0.99
+                k, j, _ = np.indices(inside.shape)
+                y, z = (j + 0.5) / 20 - 0.5, (k + 0.5) / 20 - 0.5
+                turn = sign * 2 * np.pi * 0.4
+                wanted = np.stack([np.ones_like(y), -turn * z, turn * y], axis=-1)
+                wanted /= np.linalg.norm(wanted, axis=-1)[..., None]
+                np.testing.assert_allclose(arrays["orientation"][inside], wanted[inside], atol=1e-4)
+
     def test_beside_a_mesh(self):
         self.succeeds("mesh", SAMPLES / "cell_plain.txt", "--voxel", "12", "--to", "hdf5,vtu", "-o", f"{self.out}/")
         self.assertEqual(sorted(path.suffix for path in self.out.iterdir()), [".h5", ".vtu"])

@@ -99,6 +99,33 @@ TEST(Mesher, MidsideNodesAreOnTheSurfaceAndBetweenTheirCorners) {
   EXPECT_LT(held, curved / 50);
 }
 
+// Fibres of a twisted yarn lie on helices: at a radius r the unit vector to (1, w r) along and round it,
+// where they turn by w a length.
+TEST(Mesher, FibresFollowTheTwist) {
+  const double turns = 0.15;  // a mm
+  for (const double sign : {1.0, -1.0})
+    for (const Unit unit : {Unit::mm, Unit::cm}) {
+      yarn::Body body = straight_tube(1, 1, 3);
+      body.twist = sign * turns;
+      Diagnostics diagnostics;
+      const Result<Mesh> mesh = mesh_yarns({}, std::vector{body}, unit, {.size = 0.25}, diagnostics);
+      ASSERT_TRUE(mesh.ok());
+      const double scale = millimetres_per(unit);
+      double steepest = 0;
+      for (std::size_t e = 0; e < mesh->elements.size(); ++e) {
+        Vec3 middle = Vec3::Zero();
+        for (std::size_t k = 0; k < 4; ++k) middle += mesh->nodes[mesh->elements[e][k]] / (4 * scale);
+        // Z is right-handed: seen along x, y turns towards z.
+        const double w = sign * 2 * std::numbers::pi * turns;
+        const Vec3 wanted = Vec3(1, -w * middle.z(), w * middle.y()).normalized();
+        EXPECT_LT((mesh->along[e] - wanted).norm(), 1e-9);
+        EXPECT_NEAR(mesh->across[e].dot(mesh->along[e]), 0, 1e-14);
+        steepest = std::max(steepest, std::hypot(wanted.y(), wanted.z()) / wanted.x());
+      }
+      EXPECT_GT(steepest, 0.3);
+    }
+}
+
 // Edges get no longer than the yarn is thin, whatever is asked for.
 TEST(Mesher, ASizeAboveTheThicknessIsTheThickness) {
   const Mesh mesh = mesh_of({straight_tube(1, 0.5, 5)}, {.size = 100});
