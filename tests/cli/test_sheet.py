@@ -114,7 +114,7 @@ CLOTHS = {
 
 
 # Tried on every change; every night all of them.
-FEW = ("denim", "satin", "jersey", "locknit", "braid", "flat braid")
+FEW = ("denim", "satin", "jersey", "rib", "locknit", "braid", "flat braid")
 
 
 class Sheet(Case):
