@@ -62,11 +62,11 @@ bool lacks_count(Parser& p, std::string_view noun) {
   };
   if (is_pitch(text)) {
     p.error(p.here(), fmt::format("the number of {} is missing in front of the pitch: write '8 {}' for 8 {}",
-                                  noun, text, noun));
+                                  noun, readable(text), noun));
   } else if (const std::string_view behind = text.substr(std::min(text.size(), front.size()));
              is_pitch(front) && trimmed(behind).find_first_not_of("0123456789") == std::string_view::npos) {
     p.error(p.here(), fmt::format("the number of {} is in front of the pitch: write '{} {}'", noun,
-                                  trimmed(behind), front));
+                                  trimmed(behind), readable(front)));
   } else {
     return false;
   }
