@@ -37,7 +37,9 @@ constexpr std::array lessons = {
         "knit", "file block",
         "knit [jersey | purl | rib AxB | interlock | full-cardigan | half-cardigan | milano | half-milano | "
         "jacquard] ... end",
-        "A weft knit: wales along y, courses along x; without a word by its `chart`.", "knit jersey"},
+        "A weft knit: wales along y, courses along x; without a word by its `chart`. `single jersey` and "
+        "`single-jersey` are the jersey; a `spacer` is a chart of two faces.",
+        "knit jersey"},
     Lesson{"warpknit", "file block",
            "warpknit [tricot | cord | satin | velvet | locknit | queens-cord | atlas] ... end",
            "A warp knit by its bars; with a word one of the classics.", "warpknit"},
@@ -68,7 +70,9 @@ constexpr std::array lessons = {
     Lesson{"dtex", "thread yarn", "dtex V[/N][ fN][ xN]",
            "Linear density, g/10 km, of a single yarn; behind / a number above 9 is that of filaments, any "
            "other one "
-           "that of plies, which multiply it. With `plies` alone it is that of the whole yarn.",
+           "that of plies, which multiply it. With `plies` alone it is that of the whole yarn. `f` or `fil` "
+           "marks the filaments, "
+           "R a resultant count; Tt may stand in front.",
            "dtex 167 f48 x2"},
     Lesson{"denier", "thread yarn", "denier V[/N][ fN][ xN]",
            "Linear density, g/9 km, written as dtex is; `denier 20/22` is a raw silk's range.",
@@ -76,13 +80,14 @@ constexpr std::array lessons = {
     Lesson{"Td", "thread yarn", "Td V", "Linear density, g/9 km: another word for denier.", "Td 150"},
     Lesson{"Nm", "thread yarn", "Nm V[/N]",
            "Metric count, km/kg, of a single yarn; of two numbers the smaller one is that of plies, which "
-           "divide it. "
+           "divide it, and `ply` may follow them. "
            "With `plies` alone it is that of the whole yarn.",
            "Nm 2/60"},
     Lesson{"Ne", "thread yarn", "Ne V[/N]",
            "English cotton count, hanks of 840 yards a pound, of a single yarn; of two numbers the smaller "
            "one is that "
-           "of plies, which divide it. With `plies` alone it is that of the whole yarn.",
+           "of plies, which divide it, and `ply` may follow them. With `plies` alone it is that of the whole "
+           "yarn.",
            "Ne 30/2"},
     Lesson{"density", "thread yarn material", "density V", "Density of the fibre.", "density 1.52", "density",
            "what the material says"},
@@ -193,14 +198,14 @@ constexpr std::array lessons = {
     Lesson{"warp", "weave", "warp THREADS N [pitch] P [open]",
            "The warps: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than "
            "20 times "
-           "their width.",
+           "their width. `24 per cm` is 24/cm.",
            "warp cotton 8 24/cm", "pitch"},
     Lesson{"weft", "weave", "weft THREADS N [pitch] P [open]",
            "The wefts: threads in turn (`a,2b`), how many, and how far apart; `open` where that is more than "
            "20 times "
-           "their width.",
+           "their width. `24 per cm` is 24/cm.",
            "weft cotton 8 pitch 0.4", "pitch"},
-    Lesson{"fill", "weave", "fill THREADS N [pitch] P [open]", "Another word for weft.",
+    Lesson{"fill", "weave", "fill THREADS N [pitch] P [open]", "Another word for weft. `24 per cm` is 24/cm.",
            "fill cotton 8 60 ppi", "pitch"},
     Lesson{
         "draft", "weave",
@@ -208,7 +213,8 @@ constexpr std::array lessons = {
         "ENDSxPICKS | "
         "basket A/B | oxford | drill | 5HS | leno "
         "[half | full] | file NAME",
-        "Which yarn is on top; without a word a block of rows of 0 and 1 (1: warp on top) that `end` closes.",
+        "Which yarn is on top; without a word a block of rows of 0 and 1 (1: warp on top) that `end` closes. "
+        "A number of shafts with HS, H or harness behind it (`5HS`, `8-harness`) is a satin.",
         "draft twill 2/2"},
     Lesson{"profile", "weave", "profile peirce | sine [A] | lenticular | racetrack | straight",
            "How yarns go between crossings on different sides.", "profile sine 0.12", "length",
