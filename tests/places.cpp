@@ -1,8 +1,5 @@
 #include "places.h"
 
-#include <cstdlib>
-#include <string_view>
-
 namespace selvage::places {
 
 std::string samples() {
@@ -28,10 +25,6 @@ std::string gmsh() {
 }
 std::string ccx() {
   return CCX;
-}
-bool everything() {
-  const char* const given = std::getenv("SELVAGE_EVERYTHING");
-  return given != nullptr && std::string_view(given) == "1";
 }
 
 }  // namespace selvage::places

@@ -15,6 +15,4 @@ std::string system_python();  // Debian's, which has numpy and meshio
 std::string gmsh();
 std::string ccx();
 
-bool everything();  // SELVAGE_EVERYTHING=1, the nightly run: also what takes long and differs little
-
 }  // namespace selvage::places

@@ -90,11 +90,16 @@ class GapSearch {
     }
     return station;
   }
-  double gap_of(const SweptStation& on, const Vec2& q, const std::vector<Vec2>& outline) {
+  // Where it is at least `enough`, a lower bound that is, too: by the circle round the outline, of radius
+  // `reach`.
+  double gap_of(const SweptStation& on, const Vec2& q, const std::vector<Vec2>& outline, double reach,
+                double enough = std::numeric_limits<double>::infinity()) {
     const Vec3 p = on.position + q.x() * on.across + q.y() * on.up;
     const SweptStation foot = foot_of(p);
     const Vec3 d = p - foot.position;
-    return signed_distance(outline, Vec2(d.dot(foot.across), d.dot(foot.up)));
+    const Vec2 seen(d.dot(foot.across), d.dot(foot.up));
+    const double bound = seen.norm() - reach;
+    return bound >= enough ? bound : signed_distance(outline, seen);
   }
 
  private:
@@ -138,7 +143,8 @@ double least_between(double low, double high, const Function& f) {
 double refined_gap(const SweptYarn& a, double from, double to, int stations, const SweptYarn& b,
                    double near_b, double reach_b) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const double step = (to - from) / stations, reaches = reach_of(a.outline) + reach_of(b.outline);
+  const double step = (to - from) / stations, reach = reach_of(b.outline),
+               reaches = reach_of(a.outline) + reach;
   const auto place = [&](int i) { return from + step * i; };
   const std::size_t count = a.outline.size();
   GapSearch search(b, near_b, reach_b);
@@ -160,7 +166,7 @@ double refined_gap(const SweptYarn& a, double from, double to, int stations, con
     search.restart();
     search.foot_of(on.position);
     for (std::size_t k = 0; k < count; ++k) {
-      const double here = search.gap_of(on, a.outline[k], b.outline);
+      const double here = search.gap_of(on, a.outline[k], b.outline, reach, gap + travel);
       gaps[static_cast<std::size_t>(i) + 1][k] = here;
       gap = std::min(gap, here);
     }
@@ -181,7 +187,7 @@ double refined_gap(const SweptYarn& a, double from, double to, int stations, con
     search.foot_of(a.at(low.at).position);
     gap = std::min(gap,
                    least_between(std::max(low.at - step, from), std::min(low.at + step, to), [&](double t) {
-                     return search.gap_of(a.at(t), a.outline[low.point], b.outline);
+                     return search.gap_of(a.at(t), a.outline[low.point], b.outline, reach);
                    }));
   }
   return gap;
@@ -196,7 +202,7 @@ double least_gap(const SweptYarn& a, double from, double to, int stations, const
   };
   const bool refines = !a.fine.empty() && !b.fine.empty();
   const double slack = refines ? coarseness(a) + coarseness(b) : 0.0;
-  const double reaches = reach_of(a.outline) + reach_of(b.outline);
+  const double reach = reach_of(b.outline), reaches = reach_of(a.outline) + reach;
   std::vector<Near> near;
   GapSearch search(b, near_b, reach_b);
   double gap = std::numeric_limits<double>::infinity();
@@ -206,20 +212,21 @@ double least_gap(const SweptYarn& a, double from, double to, int stations, const
     search.restart();
     if ((search.foot_of(on.position).position - on.position).norm() - reaches > gap + slack) continue;
     for (std::size_t k = 0; k < a.outline.size(); ++k) {
-      const double here = search.gap_of(on, a.outline[k], b.outline);
+      const double here = search.gap_of(on, a.outline[k], b.outline, reach, gap + slack);
       gap = std::min(gap, here);
       if (refines && here < gap + slack) near.push_back({i, k, here});
     }
   }
   if (!refines) return gap;
   const std::size_t finer = a.fine.size() / a.outline.size(), count = a.fine.size();
-  const double coarse_gap = gap;
+  const double coarse_gap = gap, fine_reach = reach_of(b.fine);
   for (const Near& place : near) {
     if (place.gap >= coarse_gap + slack) continue;
     const SweptStation on = station_at(place.station);
     search.restart();
     for (std::size_t i = count + 1 - finer; i < count + finer; ++i)
-      gap = std::min(gap, search.gap_of(on, a.fine[(place.point * finer + i) % count], b.fine));
+      gap = std::min(gap,
+                     search.gap_of(on, a.fine[(place.point * finer + i) % count], b.fine, fine_reach, gap));
   }
   return gap;
 }

@@ -1,8 +1,8 @@
-"""Samples with yarns pass `mesh` as they come, and meshio finds every yarn whole in what was written: of the smallest sample of each
-family, every night of all samples (SELVAGE_EVERYTHING=1).
+"""Every sample with yarns passes `mesh` as it comes, and meshio finds every yarn whole in what was written.
 
-Exit code 0 of `mesh` says that no two yarns overlap. SELVAGE_ZOO=I/N takes the I-th of N parts of the samples. Edges are as
-long as gives every yarn its volume to 1 %, with middle nodes on the surfaces.
+Exit code 0 of `mesh` says that no two yarns overlap. SELVAGE_ZOO=I/N takes the I-th of N parts of the samples. Each is meshed once, with middle
+nodes on the surfaces; the smallest of each family, and every night (SELVAGE_EVERYTHING=1) all of them, with edges as short as give every yarn its
+volume to 1 %.
 """
 
 import json
@@ -21,9 +21,8 @@ def has_yarns(sample):
     return sample.suffix == ".wif" or not any(line.startswith("piece") for line in sample.read_text().splitlines())
 
 
-def samples():
-    every = sorted(path for path in SAMPLES.iterdir() if path.suffix in (".txt", ".wif") and has_yarns(path))
-    return every if EVERYTHING else smallest_of_each_family(every)
+ZOO = sorted(path for path in SAMPLES.iterdir() if path.suffix in (".txt", ".wif") and has_yarns(path))
+REFINED = ZOO if EVERYTHING else smallest_of_each_family(ZOO)
 
 
 class ZooMesh(Case):
@@ -52,13 +51,13 @@ class ZooMesh(Case):
             found = self.mesh(sample, size)
             self.assertGreater(min(smallest for _, smallest in found), 0.0)
             error = max(abs(share - 1) for share, _ in found)
-            if error < 0.01:
+            if error < 0.01 or sample not in REFINED:
                 return
             size /= 2
         self.assertLess(error, 0.01)
 
     def test_every_sample(self):
-        for sample in samples()[PART::PARTS]:
+        for sample in ZOO[PART::PARTS]:
             with self.subTest(sample=sample.name):
                 self.judge(sample)
 

@@ -20,23 +20,18 @@ class Writer {
     line("material epoxy\n density 1.2\n elastic isotropic {} {}\nend", number(100, 5000),
          number(-0.3, 0.45));
     for (const char* name : {"a", "b"}) thread(name);
-    switch (choice(5)) {
-      case 0:
-        weave();
-        break;
-      case 1:
-        knit();
-        break;
-      case 2:
-        warpknit();
-        break;
-      case 3:
-        braid();
-        break;
-      default:
-        yarns();
-        break;
-    }
+    // A braid's amplitude takes as long to fit as ten knits to build.
+    const int kind = choice(16);
+    if (kind < 3)
+      weave();
+    else if (kind < 7)
+      knit();
+    else if (kind < 11)
+      warpknit();
+    else if (kind < 12)
+      braid();
+    else
+      yarns();
     if (choice(2) == 1) cell();
     return text_;
   }

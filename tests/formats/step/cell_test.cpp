@@ -290,7 +290,6 @@ const std::map<std::string, std::string> sizes = {{"cell_plain", "-clmax 0.3"},
                                                   {"cell_fibre", "-clmax 0.02"}};
 
 TEST_P(GmshCell, IsMeshedConformally) {
-  if (GetParam() == "cell_orthogonal" && !places::everything()) GTEST_SKIP() << "half a minute: every night";
   const BuiltCell built = build(GetParam(), 0.05);
   const std::vector<cad::Part> parts = write(built);
   for (const std::string options : {"", "-setnumber Mesh.RandomSeed 7"}) {
