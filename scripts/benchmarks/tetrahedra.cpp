@@ -162,7 +162,9 @@ int main(int argc, char** argv) {
   }
   fmt::print("{{\"rows\": [\n");
   const fabric::Fabric cloth = read(sample);
-  const std::vector<yarn::Body> bodies = benchmarks::built(cloth, {});
+  fabric::BuildOptions options;  // as `selvage mesh` has them
+  options.gap = fabric::meshed_gap_share * fabric::smallest_section(cloth).value_or(0.0);
+  const std::vector<yarn::Body> bodies = benchmarks::built(cloth, options);
   bool is_first = true;
   for (std::size_t k = 0; k < sizes.size(); ++k)
     for (const double target : targets)

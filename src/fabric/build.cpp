@@ -21,6 +21,7 @@
 #include "yarn/ends.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"
+#include "yarn/role_color.h"
 #include "yarn/tube.h"
 
 namespace selvage::fabric {
@@ -132,9 +133,10 @@ void describe(yarn::BodyLabel& body, const std::string& name, const std::string&
   body.thread = thread_name;
   body.material = thread.material.value_or("");
   body.role = role;
-  body.color = thread.color.value_or(Color{});
-  body.has_own_color = thread.color && body.is_colored;
   body.twist = fibre_twist(thread, units);
+  const bool is_lighter = body.twist > 0;  // Z
+  body.color = thread.color.value_or(yarn::role_color(role, is_lighter ? 1 : 0));
+  body.has_own_color = thread.color && body.is_colored;
   if (thread.linear_density && thread.fibre_density())
     body.fibre_area =
         thread.linear_density->tex() / (1000 * *thread.fibre_density()) / std::pow(millimetres_per(units), 2);

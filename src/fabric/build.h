@@ -39,6 +39,10 @@ struct BuildOptions {
   WorkLimits work;
 };
 
+// The default of BuildOptions::gap where the space between yarns is meshed: this times smallest_section().
+// Between nearer yarns, tetrahedra are as flat as the gap.
+constexpr double meshed_gap_share = 0.05;
+
 // The smallest section size (width or thickness) of the yarns of the text, or of its constructions' threads;
 // file units, none where there is no size.
 std::optional<double> smallest_section(const Fabric& fabric);

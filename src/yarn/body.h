@@ -63,7 +63,7 @@ struct BodyLabel {
   Color color;
   // Of a CAD file: whether it says them, or they were given here.
   bool is_named = true, is_colored = true;
-  bool has_own_color = true;  // false: nobody gave it one, `color` is the usual grey
+  bool has_own_color = true;  // false: nobody gave it one, `color` is that of its role
   double twist = 0;           // of the fibres, turns per file unit along the centre line; > 0: Z, < 0: S
   double fibre_area =
       0;               // of the fibres in a section: tex / (1000 density), file units squared; 0: not known

@@ -1,4 +1,4 @@
-// Colours of yarns that nobody gave one: of pictures and pages.
+// Colours of yarns that nobody gave one.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 namespace selvage::yarn {
 
 // Of the yarn of this number among those that are shown: every second one is a little lighter, so that
-// neighbours can be told apart.
+// neighbours can be told apart. In files those of Z twist are the lighter ones.
 Color role_color(Role role, std::size_t number);
 
 // Of regions of meshes, one by one: hues a golden section of the circle apart; and of the matrix.
