@@ -27,12 +27,13 @@ using fabric::Weave;
 
 // All are compared ignoring case and written as they stand here.
 inline constexpr std::array<Word<Hand>, 2> hand_words{{{"Z", Hand::z}, {"S", Hand::s}}};
-inline constexpr std::array<Word<LinearDensity::Measure>, 5> density_words{
-    {{"tex", LinearDensity::Measure::tex},
-     {"dtex", LinearDensity::Measure::dtex},
-     {"denier", LinearDensity::Measure::denier},
-     {"Nm", LinearDensity::Measure::nm},
-     {"Ne", LinearDensity::Measure::ne}}};
+inline constexpr auto density_words = [] {
+  using enum LinearDensity::Measure;
+  std::array<Word<LinearDensity::Measure>, 5> words{};
+  for (std::size_t i = 0; const LinearDensity::Measure measure : {tex, dtex, denier, nm, ne})
+    words[i++] = {fabric::name_of(measure), measure};
+  return words;
+}();
 inline constexpr std::array<Word<Unit>, 5> unit_words{
     {{"m", Unit::m}, {"cm", Unit::cm}, {"mm", Unit::mm}, {"um", Unit::um}, {"inch", Unit::inch}}};
 inline constexpr std::array<Word<Role>, 8> role_words{{{"warp", Role::warp},

@@ -292,7 +292,7 @@ bool has_room(const Knit& knit, const KnitField& field, const KnitYarn& yarn, do
 
 // Three digits.
 double rounded_down(double value) {
-  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2);
   return std::floor(value / step) * step;
 }
 
@@ -309,18 +309,33 @@ std::optional<double> enlargement_with_room(const Knit& knit, const KnitField& f
   return std::nullopt;
 }
 
+// Of three digits.
+double rounded_up(double value) {
+  return -rounded_down(-value);
+}
+
+// How a thread that is sized by its linear density becomes so many times thinner.
+std::string as_count(const Thread& thread, double thinner) {
+  if (!thread.linear_density || thread.diameter || thread.section) return {};
+  const LinearDensity finer = thread.linear_density->times(1 / (thinner * thinner));
+  std::string text = fmt::format(" ({} {:.3g}", name_of(finer.measure),
+                                 finer.is_indirect() ? rounded_up(finer.value) : rounded_down(finer.value));
+  const double denser = rounded_up(thread.size_packing().value_or(1.0) * thinner * thinner);
+  if (denser <= 1) text += fmt::format(", or a packing of {:.3g}", denser);
+  return text + ")";
+}
+
 // The error with the sizes that have room.
 std::optional<Message> no_room(const Fabric& fabric, const Knit& knit, const KnitField& field,
-                               const KnitYarn& yarn) {
+                               const KnitYarn& yarn, const Thread& thread) {
   const std::optional<double> larger = enlargement_with_room(knit, field, yarn);
   if (!larger) return std::nullopt;
   const double across = 2 * yarn.half.x();
   const LoopShape& shape = field.shape;
   std::string text = fmt::format(
-      "a yarn of {:.4g} {} has no room in loops of these courses and wales: a yarn of {:.3g} at most has (a "
-      "tex "
-      "or a packing {:.3g} times that), or courses {:.4g} and wales {:.4g} apart",
-      across, name_of(fabric.units), across / *larger, 1 / (*larger * *larger),
+      "a yarn of {:.4g} {} has no room in loops of these courses and wales: a yarn of {:.3g} at most has{}, "
+      "or courses {:.4g} and wales {:.4g} apart",
+      across, name_of(fabric.units), across / *larger, as_count(thread, *larger),
       shape.course * yarn.half.x() * *larger, shape.wale * yarn.half.x() * *larger);
   if (knit.loop) text += fmt::format(" with loops of {:.4g}", *knit.loop * *larger);
   return error(Kind::geometry, std::move(text));
@@ -365,7 +380,8 @@ Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const Thickes
   const double gap = gap_of(fabric, size, options);
   const double left = left_between(mending, yarn);
   if (left <= 0.0 && has_densities(knit))
-    if (const std::optional<Message> refused = no_room(fabric, knit, field, yarn)) return *refused;
+    if (const std::optional<Message> refused = no_room(fabric, knit, field, yarn, *thickest.thread))
+      return *refused;
   const std::string near = fmt::format("near ({:.4g}, {:.4g}, {:.4g})", mending.at.x() * size.width / 2,
                                        mending.at.y() * size.width / 2, mending.at.z() * size.height / 2);
   warn(left > 0.0 ? fmt::format("the loops of this knit come nearer to each other than is wanted: {} about "

@@ -33,8 +33,20 @@ struct LinearDensity {
   double value = 0;
   Measure measure = Measure::tex;
   [[nodiscard]] double tex() const;  // g/km; dtex / 10, denier / 9, 1000 / Nm, 590.5412... / Ne
+  // Length per mass, not mass per length: the finer the yarn, the larger the number.
+  [[nodiscard]] bool is_indirect() const { return measure == Measure::nm || measure == Measure::ne; }
+  // In the same measure, of a yarn of so many times the mass per length.
+  [[nodiscard]] LinearDensity times(double mass) const {
+    return {is_indirect() ? value / mass : value * mass, measure};
+  }
   bool operator==(const LinearDensity&) const = default;
 };
+
+// As Fabric TXT has it: tex, dtex, denier, Nm, Ne.
+constexpr std::string_view name_of(LinearDensity::Measure measure) {
+  constexpr std::array<std::string_view, 5> names{"tex", "dtex", "denier", "Nm", "Ne"};
+  return names[static_cast<std::size_t>(measure)];
+}
 
 enum class Hand { z, s };
 

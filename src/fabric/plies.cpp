@@ -85,13 +85,24 @@ Result<Places> places_in(const yarn::TubeSpec& spec, std::size_t count) {
   return places;
 }
 
-Message too_much_twist(double turning, double reach, Unit units) {
-  return error(
-      Kind::geometry,
-      fmt::format(
-          "so much twist lays the outside of the yarn at 45 degrees or more: at most {:.4g} turns per "
-          "metre for this section and path",
-          std::floor(std::abs(turning) / (2.0 * pi) * 1000.0 / millimetres_per(units) / reach)));
+constexpr double steepest = 0.98;  // slope of the outside of a twisted yarn against its line
+
+// `inclination`: of the outside, as a slope, of which `straight` is due to the twist alone.
+Message too_much_twist(double turning, double inclination, double straight, Unit units) {
+  const double most =
+      std::floor(steepest / inclination * std::abs(turning) / (2.0 * pi) * 1000.0 / millimetres_per(units));
+  if (straight < steepest)
+    return error(
+        Kind::geometry,
+        fmt::format("where the path bends most, so much twist lays the outside of the yarn at 45 "
+                    "degrees or more: at most {:.4g} turns per metre with this path. A straight one "
+                    "has room for the twist: in a weave 'crimp 0' keeps the warp straight, 'crimp 1' "
+                    "the weft",
+                    most));
+  return error(Kind::geometry,
+               fmt::format("so much twist lays the outside of the yarn at 45 degrees or more: at most {:.4g} "
+                           "turns per metre for this section and path",
+                           most));
 }
 
 // The spine of a plan whose parts lie at these places. Errors: as Bundle::make.
@@ -102,8 +113,8 @@ Result<Spine> spine_of(const YarnPlan& plan, const Places& places, double turnin
                  "no twist");
   Result<Spine> spine = make_spine(plan.line, plan.spec.guide, turning, places.reach);
   if (!spine) return spine;
-  constexpr double steepest = 0.98;
-  if (spine->inclination > steepest) return too_much_twist(turning, spine->inclination / steepest, units);
+  if (spine->inclination > steepest)
+    return too_much_twist(turning, spine->inclination, std::abs(turning) * places.reach, units);
   return spine;
 }
 
@@ -115,12 +126,7 @@ Thread thread_of_part(const Thread& whole, double count, double diameter, bool i
     thread.filaments.reset();
     thread.twist.reset();
   }
-  if (thread.linear_density) {
-    if (thread.linear_density->measure == LinearDensity::Measure::ne)
-      thread.linear_density->value *= count;
-    else
-      thread.linear_density->value /= count;
-  }
+  if (thread.linear_density) thread.linear_density = thread.linear_density->times(1 / count);
   thread.diameter = diameter;
   thread.section = yarn::Circle{diameter};
   return thread;

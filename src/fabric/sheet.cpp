@@ -61,6 +61,7 @@ struct Stretch {
   double begin = 0, end = 0;  // parameters
   double length = 0, forward = 0, volume = 0;
   Vec3 start = Vec3::Zero();
+  Vec2 way = Vec2::Zero();  // in the plane of the cloth, from its start to its end
   Box3 box;
   double inner = 0, outer = 0;  // distances from the z axis
   double turn = 0;              // about it, radians
@@ -105,6 +106,7 @@ std::optional<Stretch> piece_of(const yarn::Body& body, int axis, double from, d
   // A plane seals each end; the one through the start sees nothing of it.
   const double sealed = yarn::area_vector(yarn::end_curve(part, true)).dot(stop - piece.start) / 3.0;
   piece.volume = std::abs(nurbs::volume_flux(part.surface, piece.start) + sealed);
+  piece.way = (stop - piece.start).head<2>();
   nurbs::extend(piece.box, part.surface, 1e-9 * yarn::bounds(part).diagonal().norm());
   return piece;
 }
@@ -130,7 +132,8 @@ double hidden_share(const std::vector<std::pair<double, double>>& lanes, double 
 // One repeat of a construction as a cloth of its own, with a cell so that it goes on beyond it.
 struct Sample {
   Fabric fabric;
-  int axis_of_braid = -1;                        // 0: a strip, 2: a tube; -1: no braid
+  int axis_of_braid = -1;                        // 0: a strip, 2: a tube; -1: none, or a planar one
+  bool is_oblique = false;                       // yarns run at angles to x and y
   Vec3 low = Vec3::Zero(), size = Vec3::Zero();  // file units; of a braid one number
 };
 
@@ -168,7 +171,8 @@ Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Construct
   made.materials = fabric.materials;
   made.outlines = fabric.outlines;
   made.items = {item};
-  if (auto* const braid = std::get_if<Braid>(&made.items.front())) {
+  Vec3 beyond = Vec3::Zero();  // how far the cloth goes on beyond the sample
+  if (auto* const braid = std::get_if<Braid>(&made.items.front()); braid != nullptr && !braid->planar) {
     const int axis = braid->flat ? 0 : 2;
     if (!repeat[static_cast<std::size_t>(axis)])
       return error(Kind::unsupported, "the braid does not repeat along its axis");
@@ -186,7 +190,13 @@ Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Construct
     const auto counted = [&](int axis) {
       return static_cast<int>(std::lround(sample.size[axis] / unit[axis]));
     };
-    if (auto* const weave = std::get_if<Weave>(&made.items.front())) {
+    if (auto* const braid = std::get_if<Braid>(&made.items.front())) {
+      sample.is_oblique = true;
+      // Beside the crossings, and as far beyond as a yarn gets that begins in the repeat.
+      sample.low = Vec3(0.137 * sample.size.x(), 0.0731 * sample.size.y(), 0.0);
+      const double slope = std::tan(braid->angle * pi / 180);
+      beyond = Vec3(sample.size.y() / slope, sample.size.x() * slope, 0.0);
+    } else if (auto* const weave = std::get_if<Weave>(&made.items.front())) {
       // Binders lie in gaps that the cloth of the text has.
       const bool is_bound = !weave->binders.empty();
       weave->warp.count = std::max(counted(1), is_bound ? weave->warp.count : 0);
@@ -205,8 +215,8 @@ Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Construct
     }
   }
   Cell cell;
-  cell.low = sample.low;
-  cell.high = sample.low + sample.size;
+  cell.low = sample.low - beyond;
+  cell.high = sample.low + sample.size + beyond;
   cell.periodic = {true, true, false};
   made.cell = cell;
   return sample;
@@ -266,6 +276,7 @@ class Measuring {
   [[nodiscard]] SystemSheet system_sheet(const Item& item, const std::string& name, const Sum& sum) const;
   [[nodiscard]] ThreadSheet thread_sheet(const std::string& name, const Sum& sum) const;
   void set_braid(const Braid& braid, Sheet& sheet) const;
+  void set_planar_braid(Sheet& sheet) const;
 
   const Fabric& fabric_;
   const Sample& sample_;
@@ -277,8 +288,9 @@ class Measuring {
   std::array<std::vector<std::pair<double, double>>, 2> lanes_;  // of yarns along x, along y
   Box3 box_;
   double inner_ = std::numeric_limits<double>::infinity(), outer_ = 0;
-  double turn_ = 0, width_ = 0;  // of braiders, summed: radians a mm, and mm
+  double turn_ = 0, width_ = 0;  // of braiders, summed: radians a mm (a planar one: to x), and mm
   int braiders_ = 0;
+  double lanes_of_braiders_ = 0, lanes_of_axials_ = 0;  // of a planar braid, mm2
 };
 
 // The one that it goes forward along.
@@ -326,7 +338,9 @@ Stretch Measuring::piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis) {
 
 Measuring::Measured Measuring::measured(YarnBuilder::Shaped yarn) {
   const int axis = axis_of(*yarn.body);
-  const Stretch piece = piece_in_repeat(yarn, axis);
+  Stretch piece = piece_in_repeat(yarn, axis);
+  // An oblique yarn is compared with the straight line.
+  if (sample_.is_oblique) piece.forward = piece.way.norm();
   return {std::move(yarn.label), axis, piece};
 }
 
@@ -371,9 +385,16 @@ void Measuring::add(const Measured& yarn, const Construction& construction, std:
   add_to(systems_, construction.system(index), piece, label, thread);
   add_to(threads_, thread.name, piece, label, thread);
   box_.extend(piece.box);
-  if (!is_braid()) {
+  if (!is_braid() && !sample_.is_oblique) {
     const double low = piece.box.min()[1 - axis], high = piece.box.max()[1 - axis];
     lanes_[static_cast<std::size_t>(axis)].emplace_back(0.5 * (low + high), high - low);
+  }
+  if (const auto section = centred_section_of(thread, fabric_.units); sample_.is_oblique && section)
+    (label.role == Role::braider ? lanes_of_braiders_ : lanes_of_axials_) +=
+        mm_ * mm_ * yarn::nominal_size(*section).width * piece.forward;
+  if (sample_.is_oblique && label.role == Role::braider) {
+    ++braiders_;
+    turn_ += std::atan(std::abs(piece.way.y() / piece.way.x()));
   }
   if (!is_tube()) return;
   inner_ = std::min(inner_, piece.inner);
@@ -390,7 +411,12 @@ SystemSheet Measuring::system_sheet(const Item& item, const std::string& name, c
   system.name = name;
   if (sum.forward > 0) {
     system.per_mm = is_braid() ? sum.yarns : sum.forward / extent();
-    system.crimp = sum.length / sum.forward - 1;
+    if (is_braid())
+      system.take_up = 1 - sum.forward / sum.length;
+    else if (std::holds_alternative<Knit>(item) || std::holds_alternative<Warpknit>(item))
+      system.yarn_ratio = sum.length / sum.forward;
+    else
+      system.crimp = sum.length / sum.forward - 1;
   }
   system.length = 1e-3 * sum.length * per_m();
   if (sum.has_mass) system.mass = sum.mass * per_m();
@@ -426,7 +452,15 @@ ThreadSheet Measuring::thread_sheet(const std::string& name, const Sum& sum) con
   return sheet;
 }
 
+void Measuring::set_planar_braid(Sheet& sheet) const {
+  sheet.braid_angle = turn_ / braiders_ * 180 / pi;
+  // Of the braiders half go each way.
+  const auto open = [&](double lanes) { return std::max(0.0, 1 - lanes / extent()); };
+  sheet.cover = 1 - std::pow(open(lanes_of_braiders_ / 2), 2) * open(lanes_of_axials_);
+}
+
 void Measuring::set_braid(const Braid& braid, Sheet& sheet) const {
+  if (braid.planar) return set_planar_braid(sheet);
   sheet.repeat_y = 0;
   if (braid.flat) return;
   const double radius = mm_ * braid.radius, angle = std::atan(radius * turn_ / braiders_);
@@ -445,7 +479,7 @@ Sheet Measuring::sheet(const Item& item) const {
   double area = extent();  // mm2
   if (const auto* const braid = std::get_if<Braid>(&item)) {
     set_braid(*braid, sheet);
-    area *= braid->flat ? mm_ * box_.sizes().y() : 2 * pi * mm_ * braid->radius;
+    if (!braid->planar) area *= braid->flat ? mm_ * box_.sizes().y() : 2 * pi * mm_ * braid->radius;
   }
   bool has_mass = true, has_fibres = true;
   double volume = 0, fibres = 0, mass = 0;

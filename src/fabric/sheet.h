@@ -4,20 +4,26 @@
 //
 // What the numbers are, with w the area of the repeat:
 //   threads        of a system, on a length across them: what its yarns go forward, together, by w
-//   crimp          length by what the yarn goes forward, less one (ISO 7211-3; run-in of a knit)
+//   crimp          length by what the yarn goes forward, less one (ISO 7211-3); of a planar braid by the
+//                  straight line
+//   take-up        of the braiders and axial yarns of a tube or strip: the share of the yarn that the braid
+//   is
+//                  shorter; most of it is the angle
+//   yarn ratio     of a knit: length of yarn by that of the fabric
 //   mass           sum of length times linear density, by w (ISO 3801)
 //   thickness      from the lowest to the highest place of the yarns; of a tube from its inside to its
 //   outside cover          share of w that yarns hide, where they run straight when seen from above: of one
-//                  direction k the share of its yarns' lanes, of both k1 + k2 - k1 k2 (Peirce 1937)
+//                  direction k the share of its yarns' lanes, of both k1 + k2 - k1 k2 (Peirce 1937); of a
+//                  planar braid of all directions, by the widths of the sections
 //   cover factor   of a system: threads an inch by the root of the cotton count (Peirce 1937)
 //   yarn fraction  volume of the yarns by that of the cloth, w times the thickness
 //   fibre fraction volume of the fibres (tex by density) by that of the cloth; the rest is its porosity
 //   loop length    of a weft knit: yarn for a needle in a row of the chart
 //   tightness      root of tex by the loop length in cm (Munden 1962, Doyle)
 //   run-in         of a warp knit: mm of yarn for a rack, 480 courses
-//   braid angle    of a tube, by the turns about its axis at the radius of its middle surface. Its cover:
-//   with f the share that the yarns of one direction fill, 2 f - f^2
-//                  (Brunnschweiler 1954)
+//   braid angle    of a tube, by the turns about its axis at the radius of its middle surface; of a planar
+//                  braid against x. A tube's cover: with f the share that the yarns of one direction fill,
+//                  2 f - f^2 (Brunnschweiler 1954)
 //   twist factor   turns a metre times the root of tex; and turns an inch by the root of the cotton count
 #pragma once
 
@@ -36,7 +42,9 @@ struct SystemSheet {
   double length = 0;                   // m of yarn in a square metre; of a braid in a metre
   double mass = 0;                     // g in a square metre (a metre); 0: not known
   std::optional<double> per_mm;        // threads on a length across them; of a braid: how many there are
-  std::optional<double> crimp;         // 0: straight; none of tufts
+  std::optional<double> crimp;         // of a weave or a planar braid; 0: straight; none of tufts
+  std::optional<double> take_up;       // of a tube or strip, a share of the yarn
+  std::optional<double> yarn_ratio;    // of a knit, >= 1
   std::optional<double> cover_factor;  // of a weave
   std::optional<double> loop_length;   // of a weft knit, mm
   std::optional<double> tightness;     // sqrt(tex) / cm
@@ -57,7 +65,8 @@ struct Sheet {
   std::string kind;  // weave, knit, warpknit, braid
   std::string file;
   TextPlace place;
-  // mm: what was measured, along x and y; of a braid along its axis, and nothing.
+  [[nodiscard]] bool is_per_metre() const { return kind == "braid" && repeat_y == 0; }
+  // mm: what was measured, along x and y; of a tube or strip along its axis, and nothing.
   double repeat_x = 0, repeat_y = 0;
   double mass = 0;         // g in a square metre; 0: not known
   double linear_mass = 0;  // of a braid, g in a metre; 0: not known, or no braid

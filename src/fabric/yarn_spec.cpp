@@ -183,12 +183,16 @@ std::string share_oddity(const Thread& thread, const yarn::Section& section,
     low = std::min(low, share);
     high = std::max(high, share);
   }
-  if (high > 1.0 + 1e-9)
-    return fmt::format(
-        "the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} g/cm3): is the diameter in "
-        "truth a "
-        "radius?",
-        high, thread.linear_density->tex(), *thread.fibre_density());
+  if (high > 1.0 + 1e-9) {
+    const std::string fill =
+        fmt::format("the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} g/cm3)", high,
+                    thread.linear_density->tex(), *thread.fibre_density());
+    constexpr double of_radius = 4, usual = 0.3;
+    if (std::holds_alternative<yarn::Circle>(section) && high / of_radius < 1 && high / of_radius > usual)
+      return fill + ": is the diameter in truth a radius?";
+    return fmt::format("{}: a section of {:.3g} times the area holds them", fill,
+                       high / thread.size_packing().value_or(1.0));
+  }
   const auto differs = [&](double share) {
     return std::abs(share - *thread.packing) > 0.05 * *thread.packing;
   };

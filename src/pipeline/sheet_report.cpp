@@ -27,16 +27,18 @@ std::string line(std::string_view what, std::string_view value) {
   return fmt::format("    {:<18}{}\n", what, value);
 }
 
-Json system_json(const fabric::SystemSheet& system, bool is_braid) {
+Json system_json(const fabric::SystemSheet& system, bool is_per_metre) {
   Json json;
   const auto put = [&](const char* key, const std::optional<double>& value, double times = 1) {
     if (value) json[key] = times * *value;
   };
-  if (is_braid)
+  if (is_per_metre)
     put("yarns", system.per_mm);
   else
     put("per_cm", system.per_mm, per_cm);
   put("crimp", system.crimp);
+  put("take_up", system.take_up);
+  put("yarn_ratio", system.yarn_ratio);
   put("length", system.length);
   put("mass", known(system.mass));
   put("cover_factor", system.cover_factor);
@@ -78,32 +80,38 @@ Json sheet_json(const fabric::Sheet& sheet) {
   put("repeat_x", sheet.repeat_x);
   put("repeat_y", known(sheet.repeat_y));
   for (const fabric::SystemSheet& system : sheet.systems)
-    json["systems"][system.name] = system_json(system, sheet.kind == "braid");
+    json["systems"][system.name] = system_json(system, sheet.is_per_metre());
   for (const fabric::ThreadSheet& thread : sheet.threads) json["threads"][thread.name] = thread_json(thread);
   return json;
 }
 
 std::string systems_table(const fabric::Sheet& sheet) {
-  const bool is_braid = sheet.kind == "braid";
-  const std::string_view on = is_braid ? "m" : "m2";
+  const bool is_per_metre = sheet.is_per_metre(), is_knit = sheet.courses_per_mm.has_value();
+  const std::string_view on = is_per_metre ? "m" : "m2";
   std::vector<std::string> heads = {"system"};
-  if (is_braid)
+  if (is_per_metre)
     heads.emplace_back("yarns");
   else
     heads.insert(heads.end(), {"per cm", "per inch"});
-  heads.insert(heads.end(), {sheet.courses_per_mm ? "run-in %" : "crimp %", fmt::format("m/{}", on),
-                             fmt::format("g/{}", on)});
+  heads.insert(heads.end(), {is_knit        ? "yarn/fabric"
+                             : is_per_metre ? "take-up %"
+                                            : "crimp %",
+                             fmt::format("m/{}", on), fmt::format("g/{}", on)});
   if (sheet.kind == "weave") heads.emplace_back("cover factor");
   if (sheet.kind == "knit") heads.insert(heads.end(), {"loop length mm", "tightness factor"});
   if (sheet.kind == "warpknit") heads.emplace_back("mm a rack");
   Table table(std::move(heads));
   for (const fabric::SystemSheet& system : sheet.systems) {
     std::vector<std::string> cells = {system.name};
-    if (is_braid)
+    if (is_per_metre)
       cells.push_back(cell(system.per_mm));
     else
       cells.insert(cells.end(), {cell(system.per_mm, per_cm), cell(system.per_mm, per_inch)});
-    cells.insert(cells.end(), {system.crimp ? fmt::format("{:.2f}", 100 * *system.crimp) : "-",
+    const auto in_percent = [](double share) { return fmt::format("{:.2f}", 100 * share); };
+    cells.insert(cells.end(), {system.crimp        ? in_percent(*system.crimp)
+                               : system.take_up    ? in_percent(*system.take_up)
+                               : system.yarn_ratio ? fmt::format("{:.4g}", *system.yarn_ratio)
+                                                   : "-",
                                pipeline::cell(system.length), cell(known(system.mass))});
     if (sheet.kind == "weave") cells.push_back(cell(system.cover_factor));
     if (sheet.kind == "knit") cells.insert(cells.end(), {cell(system.loop_length), cell(system.tightness)});
@@ -114,7 +122,7 @@ std::string systems_table(const fabric::Sheet& sheet) {
 }
 
 std::string threads_table(const fabric::Sheet& sheet) {
-  const std::string_view on = sheet.kind == "braid" ? "m" : "m2";
+  const std::string_view on = sheet.is_per_metre() ? "m" : "m2";
   Table table({"thread", "tex", "fibres %", fmt::format("m/{}", on), fmt::format("g/{}", on), "twist factor",
                "(cotton)"});
   for (const fabric::ThreadSheet& thread : sheet.threads)

@@ -169,8 +169,12 @@ class Sheet(Case):
             mass += 1e-6 * tex * length
             fibres += tex * length / (1000 * density)
             self.near(said["per_cm"], 10 * yarns / size[across], "per_cm")
-            # 0.1 % of the length: a crimp of 1 % is not known to 0.1 % of itself by it.
-            self.assertAlmostEqual(said["crimp"], length / (yarns * size[axis]) - 1, delta=NEAR * (1 + said["crimp"]))
+            ratio = length / (yarns * size[axis])
+            if "yarn_ratio" in said:
+                self.near(said["yarn_ratio"], ratio, "yarn ratio")
+            else:
+                # 0.1 % of the length: a crimp of 1 % is not known to 0.1 % of itself by it.
+                self.assertAlmostEqual(said["crimp"], ratio - 1, delta=NEAR * ratio)
             self.near(said["length"], 1000 * length / area, "length")
             self.near(said["mass"], tex * length / area, "mass")
             if axis == 0 and "loop_length" in said:
@@ -247,6 +251,41 @@ end
         self.assertAlmostEqual(thread["cotton_twist_factor"], 400 * 0.0254 / math.sqrt(590.5412 / 100), delta=1e-5)
         self.assertAlmostEqual(thread["fibre_fraction"], 0.05 / (0.25 * math.pi * 0.25 + 1.5 * 0.5), delta=1e-5)
         self.assertAlmostEqual(thread["length"], 650, delta=1e-9)
+
+    # A triaxial braid of a maker's sheet (0/60/-60, 536 g/m2): carriers and axial yarns on its width, braiders at the angle.
+    def test_planar_braid(self):
+        text = """fabric 1
+thread ax
+  tex 1650
+  density 1.8
+  section ellipse 4.4 0.16
+end
+thread bi
+  tex 800
+  density 1.8
+  section ellipse 3 0.14
+end
+braid
+  thread   bi
+  carriers 16
+  pattern  2/2
+  planar   71.2
+  angle    60
+  length   60
+  axial    ax 8
+end
+"""
+        sheet = self.sheet_of(text)
+        braiders, axial = sheet["systems"]["braider"], sheet["systems"]["axial"]
+        a_mm = 16 / (71.2 * math.cos(math.radians(60)))
+        self.near(sheet["braid_angle"], 60, "angle")
+        self.near(braiders["per_cm"], 10 * a_mm, "braiders")
+        self.near(axial["per_cm"], 80 / 71.2, "axial yarns")
+        self.assertAlmostEqual(axial["crimp"], 0, delta=1e-6)
+        self.assertTrue(0 < braiders["crimp"] < 0.02, braiders["crimp"])
+        self.near(sheet["mass"], 800 * a_mm * (1 + braiders["crimp"]) + 1650 * 8 / 71.2, "mass")
+        self.assertAlmostEqual(sheet["mass"], 536, delta=0.03 * 536)
+        self.near(sheet["cover"], 1 - (1 - 3 * a_mm / 2) ** 2 * (1 - 4.4 * 8 / 71.2), "cover")
 
     def test_table(self):
         table = self.folder / "sheets.csv"
