@@ -108,6 +108,7 @@ void read_system(Parser& p, WeaveSystem& system, std::string_view noun) {
   if (!p.finish()) return;
   system.count = *number;
   system.pitch = *distance;
+  system.counted_on = length_counted_on(with_plain_blanks(text.text));
 }
 
 // The rows of a user's own loop.

@@ -82,6 +82,13 @@ std::optional<std::string> pitch_in_own_form(std::string_view text) {
   return made + std::string(word);
 }
 
+std::optional<double> length_counted_on(std::string_view text) {
+  const std::string own = pitch_in_own_form(text).value_or(std::string(text));
+  const std::size_t slash = own.rfind('/');
+  if (slash == std::string::npos || own.ends_with(')')) return std::nullopt;
+  return own.find("in", slash) != std::string::npos ? 25.4 : 10.0;
+}
+
 double width_of_threads(std::span<const fabric::Fabric* const> inside,
                         const std::vector<std::string>& names) {
   double width = 0;

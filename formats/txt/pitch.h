@@ -16,6 +16,9 @@ namespace selvage::formats::txt {
 // `/` or `per`, or one of epi, ppi, wpi, cpi, epc, ppc. None: it has that form already, or is none of these.
 std::optional<std::string> pitch_in_own_form(std::string_view text);
 
+// What length the text of a pitch counts yarns on, mm: an inch, else a centimetre. None: it is a distance.
+std::optional<double> length_counted_on(std::string_view text);
+
 // Of a cloth that nobody means without saying so: above this, in widths of the yarn, a pitch needs `open`.
 inline constexpr double max_pitch_in_widths = 20.0;
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <variant>
 
+#include "core/rounding.h"
 #include "core/wrapped.h"
 #include "fabric/build.h"
 #include "fabric/knit_chart.h"
@@ -290,12 +291,6 @@ bool has_room(const Knit& knit, const KnitField& field, const KnitYarn& yarn, do
   return left_between(KnitMoves(tried, yarn).mending(), yarn) > 0;
 }
 
-// Three digits.
-double rounded_down(double value) {
-  const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2);
-  return std::floor(value / step) * step;
-}
-
 // Of a yarn of three digits. None: none was found, and what the loops lack is not room.
 std::optional<double> enlargement_with_room(const Knit& knit, const KnitField& field, const KnitYarn& yarn) {
   std::vector<double> tried = {1.25, 1.5, 2, 3};
@@ -307,11 +302,6 @@ std::optional<double> enlargement_with_room(const Knit& knit, const KnitField& f
     if (const double rounded = across / rounded_down(across / larger); has_room(knit, field, yarn, rounded))
       return rounded;
   return std::nullopt;
-}
-
-// Of three digits.
-double rounded_up(double value) {
-  return -rounded_down(-value);
 }
 
 // How a thread that is sized by its linear density becomes so many times thinner.

@@ -252,6 +252,7 @@ struct WeaveSystem {
   TextPlace place;
   int count = 0;
   double pitch = 0;
+  std::optional<double> counted_on;  // mm: the text counts yarns on a length, an inch or 10 mm
 };
 
 struct Draft {

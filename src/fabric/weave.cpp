@@ -17,6 +17,7 @@
 #include <span>
 #include <utility>
 
+#include "core/rounding.h"
 #include "fabric/weave_construction.h"
 #include "fabric/yarn_spec.h"
 
@@ -171,7 +172,8 @@ Message WeaveConstruction::too_thick(LooseCloth loose) const {
       loose.thickness = 0.5 * (thin + thick);
       (press_cloth(loose) ? thick : thin) = *loose.thickness;
     }
-    what = fmt::format("they are pressed to {:.3g} {} at the least", thick, name_of(fabric_.units));
+    what =
+        fmt::format("they are pressed to {:.6g} {} at the least", rounded_up(thick), name_of(fabric_.units));
   } else {
     what = remedies_for(loose);
   }

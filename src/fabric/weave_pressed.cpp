@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/overloaded.h"
+#include "core/rounding.h"
 #include "fabric/weave_press.h"
 
 namespace selvage::fabric {
@@ -153,12 +154,6 @@ yarn::Section scaled(const yarn::Section& section, double by) {
       section);
 }
 
-// Three digits, not less than the value (or not more).
-double rounded(double value, bool up) {
-  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-  return (up ? std::ceil(value / step - 1e-9) : std::floor(value / step + 1e-9)) * step;
-}
-
 // A cloth with other pitches or thinner yarns.
 struct Easier {
   double warp_pitch = 1, weft_pitch = 1, yarns = 1;  // factors
@@ -195,6 +190,19 @@ std::optional<double> least_factor(double low, const std::function<bool(double)>
   return high;
 }
 
+// Not coarser than it is.
+std::string shown(const LinearDensity& density) {
+  return fmt::format("{} {:.6g}", name_of(density.measure),
+                     density.is_indirect() ? rounded_up(density.value) : rounded_down(density.value));
+}
+
+// As the text gives pitches: a distance, or so many on a length. Not closer than it is (file units).
+std::string shown_pitch(const WeaveSystem& system, double pitch, Unit units) {
+  if (!system.counted_on) return fmt::format("`pitch {:.6g}`", rounded_up(pitch));
+  return fmt::format("`{:.6g}/{}`", rounded_down(*system.counted_on / (pitch * millimetres_per(units))),
+                     *system.counted_on == 10 ? "cm" : "in");
+}
+
 std::string thinner_threads(const LooseCloth& cloth, double by) {
   std::string text;
   std::set<const Thread*> seen;
@@ -202,12 +210,12 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
     for (const WovenThread& woven : system->threads) {
       const Thread& thread = *woven.thread;
       if (!seen.insert(&thread).second) continue;
-      const auto size = [&](double value) { return rounded(by * value, false); };
+      const auto size = [&](double value) { return rounded_down(by * value); };
       const bool has_size = thread.diameter || (thread.section && woven.size.width > 0.0 &&
                                                 yarn::nominal_size(*thread.section).width > 0.0);
       std::string now;
       if (!has_size && thread.linear_density)
-        now = fmt::format("`tex {:.6g}`", rounded(by * by * thread.linear_density->tex(), false));
+        now = fmt::format("`{}`", shown(thread.linear_density->times(by * by)));
       else if (std::holds_alternative<yarn::Circle>(woven.section))
         now = fmt::format("`diameter {:.6g}`", size(woven.size.height));
       else
@@ -221,17 +229,16 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
 
 std::string remedies_for(const LooseCloth& cloth) {
   const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;
-  const auto up = [](double value, double by) { return rounded(value * by, true) / value; };
+  const auto up = [](double value, double by) { return rounded_up(value * by) / value; };
   const std::optional<double> wider = least_factor(1.0, [&](double by) {
     return has_room(cloth, {up(warp_pitch, by), up(weft_pitch, by), 1.0});
   });
   if (!wider) return "no pitch up to four times as large gives it: its yarns are too thick";
   const double percent = 100.0 * (*wider - 1.0);
   std::string text = fmt::format(
-      "both ways it is {:.{}f} % too dense. Remedies: `pitch {:.6g}` for the warp and `pitch {:.6g}` for the "
-      "weft; or {}",
-      percent, percent < 10.0 ? 1 : 0, rounded(*wider * warp_pitch, true), rounded(*wider * weft_pitch, true),
-      thinner_threads(cloth, 1.0 / *wider));
+      "both ways it is {:.{}f} % too dense. Remedies: {} for the warp and {} for the weft; or {}", percent,
+      percent < 10.0 ? 1 : 0, shown_pitch(*cloth.warp.text, *wider * warp_pitch, cloth.units),
+      shown_pitch(*cloth.weft.text, *wider * weft_pitch, cloth.units), thinner_threads(cloth, 1.0 / *wider));
   // One system alone, the denser one if that is enough.
   const auto alone = [&](bool is_warp) -> std::optional<std::string> {
     const double pitch = is_warp ? warp_pitch : weft_pitch;
@@ -239,8 +246,10 @@ std::string remedies_for(const LooseCloth& cloth) {
       return has_room(cloth, {is_warp ? up(pitch, by) : 1.0, is_warp ? 1.0 : up(pitch, by), 1.0});
     });
     if (!factor) return std::nullopt;
-    return fmt::format("; or `pitch {:.6g}` for the {} alone", rounded(*factor * pitch, true),
-                       is_warp ? "warp" : "weft");
+    return fmt::format(
+        "; or {} for the {} alone",
+        shown_pitch(is_warp ? *cloth.warp.text : *cloth.weft.text, *factor * pitch, cloth.units),
+        is_warp ? "warp" : "weft");
   };
   const bool warp_is_denser = cloth.warp.widest * cloth.weft.closest > cloth.weft.widest * cloth.warp.closest;
   std::optional<std::string> one = alone(warp_is_denser);
