@@ -82,7 +82,7 @@ std::string remedied(const std::string& text, const Message& message) {
   if (said.starts_with("'end' is missing"))
     return p.before + "end\n" + p.line_front + p.token + p.line_back + p.after;
   if (std::regex_search(said, found,
-                        std::regex("`(pitch [0-9.]+)` for the warp and `(pitch [0-9.]+)` for the weft"))) {
+                        std::regex("`([0-9.]+/cm)` for the warp and `([0-9.]+/cm)` for the weft"))) {
     const std::string now =
         std::regex_replace(text, std::regex("warp cotton 8 .*"), "warp cotton 8 " + found[1].str());
     return std::regex_replace(now, std::regex("weft cotton 8 .*"), "weft cotton 8 " + found[2].str());
