@@ -87,6 +87,10 @@ std::string remedied(const std::string& text, const Message& message) {
         std::regex_replace(text, std::regex("warp cotton 8 .*"), "warp cotton 8 " + found[1].str());
     return std::regex_replace(now, std::regex("weft cotton 8 .*"), "weft cotton 8 " + found[2].str());
   }
+  if (std::regex_search(said, found, std::regex("at most has \\((Ne [0-9.]+)")))
+    return std::regex_replace(text, std::regex("Ne [0-9.]+"), found[1].str());
+  if (std::regex_search(said, found, std::regex("'(crimp 0)' keeps the warp straight")))
+    return std::regex_replace(text, std::regex("draft plain\n"), "draft plain\n  " + found[1].str() + "\n");
   return text;
 }
 
@@ -99,6 +103,18 @@ void expect_cured(const std::string& text) {
 }
 
 }  // namespace
+
+// A remedy is in the words of the text: the count of a yarn that is too thick for its loops, the crimp of a
+// cord whose twist has no room where it bends.
+TEST(Slips, RemediesOfKnitsAndCords) {
+  expect_cured(
+      "fabric 1\nthread y\n  Ne 30\n  material cotton\nend\nknit rib 1x1\n  thread y\n  courses 6 38/in\n"
+      "  wales 6 60/in\n  loop 2.9\nend\n");
+  expect_cured(
+      "fabric 1\nthread cord\n  dtex 2800\n  material nylon\n  twist 380 Z\n  plies 2 370 S\nend\n"
+      "thread pick\n  Ne 20\n  material cotton\nend\nweave\n  warp cord 8 100/dm\n"
+      "  weft pick 4 10/dm open\n  draft plain\nend\n");
+}
 
 TEST(Slips, AreUnderstood) {
   const std::string warp = "warp cotton 8 24/cm", count = "Ne 20", title = "\"My cloth\"",

@@ -69,6 +69,14 @@ TEST(BuildTest, DiameterOfThirtyTexCottonIsThePublishedOneInEveryUnit) {
 TEST(BuildTest, DenierAndCottonCount) {
   EXPECT_NEAR((LinearDensity{270, LinearDensity::Measure::denier}.tex()), 30, 1e-12);
   EXPECT_NEAR((LinearDensity{19.7, LinearDensity::Measure::ne}.tex()), 590.541 / 19.7, 1e-4);
+  // Half as heavy in any measure: of a single yarn of two plies.
+  for (const auto measure :
+       {LinearDensity::Measure::tex, LinearDensity::Measure::dtex, LinearDensity::Measure::denier,
+        LinearDensity::Measure::nm, LinearDensity::Measure::ne}) {
+    const LinearDensity whole{30, measure};
+    EXPECT_NEAR(whole.times(0.5).tex(), 0.5 * whole.tex(), 1e-12);
+    EXPECT_EQ(whole.times(0.5).measure, measure);
+  }
 }
 
 TEST(BuildTest, DefaultToleranceIsAThousandthOfTheSmallestSize) {
