@@ -55,6 +55,14 @@ def replay(program, target, corpus, profile):
     return int(done.stdout.split()[0])
 
 
+def source_path(name):
+    """Relative to the root. Compilers are told not to name this machine's folders: a name is one below the root (./src/x.cpp) or
+    seen from the folder of the build (../src/x.h), both behind that folder's own name."""
+    build = "build-coverage"
+    name = name.removeprefix(f"./{build}/")
+    return os.path.normpath(os.path.join(build, name) if name.startswith("../") else name)
+
+
 def functions_of(program, profile, sources):
     """(path, name, first line, last line, {line: is reached}) of each function in these sources. A function that is compiled several
     times (a template) is one."""
@@ -62,7 +70,7 @@ def functions_of(program, profile, sources):
     subprocess.run(["llvm-profdata-14", "merge", "-sparse", profile, "-o", merged], check=True)
     exported = json.loads(
         subprocess.run(
-            ["llvm-cov-14", "export", program, f"-instr-profile={merged}", *[ROOT / path for path in sources]],
+            ["llvm-cov-14", "export", "-skip-expansions", program, f"-instr-profile={merged}"],
             check=True,
             capture_output=True,
             text=True,
@@ -70,7 +78,7 @@ def functions_of(program, profile, sources):
     )
     found = {}
     for function in exported["data"][0]["functions"]:
-        path = os.path.relpath(function["filenames"][0], ROOT)
+        path = source_path(function["filenames"][0])
         if not any(path.startswith(source) for source in sources):
             continue
         regions = [region for region in function["regions"] if region[5] == 0 and region[7] == 0]

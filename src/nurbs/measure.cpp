@@ -141,9 +141,16 @@ int flux_order(int degree) {
   return std::min(8, (3 * degree + 1) / 2);
 }
 
-// Of a rational surface no polynomial rule is exact: four parts to a span bring the error down to rounding.
+// Of a rational surface no polynomial rule is exact: four parts to a span bring the error down to rounding
+// where weights differ by no more than those of conics, twice as many for each four times that they differ
+// more.
 int parts_of(const Surface& surface) {
-  return surface.is_rational() ? 4 : 1;
+  if (!surface.is_rational()) return 1;
+  constexpr int most = 64;
+  const auto [least, largest] = std::ranges::minmax(surface.weights);
+  int parts = 4;
+  for (double ratio = largest / least; ratio > 2 && parts < most; ratio /= 4) parts *= 2;
+  return parts;
 }
 
 // work(degree), as a number that the compiler knows where it is that of most splines.

@@ -135,7 +135,8 @@ void run_mesh(std::string_view bytes) {
   // Each takes longer than to build the yarns, overlaps by far: an input has one of them done.
   const std::size_t chance = bytes.size() % 16;
   if (chance == 0)
-    check(bodies);
+    check({bodies.begin(),
+           bodies.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, bodies.size()))});
   else if (chance % 2 == 0)
     for (const yarn::Body& body : bodies)
       static_cast<void>(fem::make_skin(body, 2.0 * yarn::narrowest_section(body)));

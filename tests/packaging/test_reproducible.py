@@ -25,7 +25,8 @@ class Reproducible(unittest.TestCase):
     def package(self, folder, umask, **environment):
         """(package, bill of materials) of a clone in the folder."""
         folder.mkdir(parents=True)
-        subprocess.run(["git", "clone", "--quiet", REPOSITORY, folder / "selvage"], check=True)
+        subprocess.run(["git", "clone", "--quiet", "--no-checkout", REPOSITORY, folder / "selvage"], check=True)
+        subprocess.run(["git", "-C", folder / "selvage", "checkout", "--quiet", "--detach", self.commit], check=True)
         home = folder / "home"
         # The library of pages, which npm gave: a home of its own has it, too.
         kept = pathlib.Path(os.environ.get("XDG_CACHE_HOME", pathlib.Path.home() / ".cache")) / "selvage"
@@ -48,6 +49,10 @@ class Reproducible(unittest.TestCase):
         return [pathlib.Path(line) for line in done.stdout.splitlines()]
 
     def test_two_clones(self):
+        # The same for both, whatever is committed while they are built.
+        self.commit = subprocess.run(
+            ["git", "-C", REPOSITORY, "rev-parse", "HEAD"], check=True, stdout=subprocess.PIPE, text=True
+        ).stdout.strip()
         with tempfile.TemporaryDirectory(prefix="selvage-test-") as top:
             first = self.package(pathlib.Path(top, "a"), 0o022, LC_ALL="C", TZ="UTC")
             second = self.package(

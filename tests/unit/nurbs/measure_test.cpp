@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "nurbs/interpolate.h"
 
@@ -101,6 +102,25 @@ Moments summed(const Surface& s, const Vec3& origin) {
       sum += {normal.norm(), normal, flux / 3, flux / 4 * position};
     }
   return sum;
+}
+
+// A quarter of a cylinder, by weights of the same arc that differ more and more (Piegl and Tiller 6.7): the
+// flux about a point of the axis is a third of r times the area.
+TEST(VolumeFlux, OfAnArcWhoseWeightsDiffer) {
+  for (const double k : {1.0, 2.0, 4.0, 8.0}) {
+    Surface wall;
+    wall.degree_u = 2;
+    wall.degree_v = 1;
+    wall.count_u = 3;
+    wall.count_v = 2;
+    wall.knots_u = {0, 0, 0, 1, 1, 1};
+    wall.knots_v = {0, 0, 1, 1};
+    for (const double z : {0.0, 1.0}) {
+      wall.points.insert(wall.points.end(), {Vec3(1, 0, z), Vec3(1, 1, z), Vec3(0, 1, z)});
+      wall.weights.insert(wall.weights.end(), {1.0, k * std::numbers::sqrt2 / 2, k * k});
+    }
+    EXPECT_NEAR(std::abs(volume_flux(wall, Vec3::Zero())), std::numbers::pi / 6, 1e-13) << k;
+  }
 }
 
 TEST(MomentsOfAFace, AreThoseOfADenseSum) {
