@@ -13,8 +13,7 @@ jobs=$((gigabytes / 2))
 [ "$jobs" -ge 1 ] || jobs=1
 [ "$jobs" -le "$cores" ] || jobs=$cores
 
-# Of builds with clang's sanitizers: headers of libraries are left as they are, since their exact numbers and matrices take
-# most of the time. Eigen asserts its indices itself.
+# Of builds with clang's sanitizers: what is left as it is says headers.txt. Eigen asserts its indices itself.
 # shellcheck disable=SC2034  # of scripts/sanitize and scripts/fuzz
 sanitizer_flags="-O2 -g1 -DCGAL_NDEBUG -fsanitize-ignorelist=$root/scripts/suppressions/headers.txt"
 

@@ -55,10 +55,9 @@ def replay(program, target, corpus, profile):
     return int(done.stdout.split()[0])
 
 
-def source_path(name):
+def source_path(name, build):
     """Relative to the root. Compilers are told not to name this machine's folders: a name is one below the root (./src/x.cpp) or
-    seen from the folder of the build (../src/x.h), both behind that folder's own name."""
-    build = "build-coverage"
+    seen from the folder of the build (../src/x.h), both behind that folder's own name, `build`."""
     name = name.removeprefix(f"./{build}/")
     return os.path.normpath(os.path.join(build, name) if name.startswith("../") else name)
 
@@ -78,7 +77,7 @@ def functions_of(program, profile, sources):
     )
     found = {}
     for function in exported["data"][0]["functions"]:
-        path = source_path(function["filenames"][0])
+        path = source_path(function["filenames"][0], program.parents[1].name)
         if not any(path.startswith(source) for source in sources):
             continue
         regions = [region for region in function["regions"] if region[5] == 0 and region[7] == 0]
@@ -137,7 +136,9 @@ def measure(program, target, folder, known):
         total.update(lines=len(own), reached=sum(own.values()))
         if left := [line for line, reached in own.items() if not reached]:
             missing.append(f"| `{path}` | `{name}` | {ranges(left)} | {len(left)} |")
-    return [total["lines"], total["reached"], f"{100 * total['reached'] / max(total['lines'], 1):.1f}", count], missing
+    if not total:
+        sys.exit(f"fuzz: the program has no line of the sources of {target}")
+    return [total["lines"], total["reached"], f"{100 * total['reached'] / total['lines']:.1f}", count], missing
 
 
 def main():
@@ -146,7 +147,9 @@ def main():
     parser.add_argument("--folder", required=True, type=pathlib.Path, help=argparse.SUPPRESS)
     parser.add_argument("targets", nargs="*")
     chosen = parser.parse_args()
-    usage = subprocess.run([chosen.replay, "--list"], capture_output=True, text=True, check=True).stdout
+    # Its own profile would become a file in the folder that this was called from.
+    unprofiled = {**os.environ, "LLVM_PROFILE_FILE": os.devnull}
+    usage = subprocess.run([chosen.replay, "--list"], capture_output=True, text=True, check=True, env=unprofiled).stdout
     targets = [line.split("\t")[0] for line in usage.splitlines()]
     known = list(excuses())
     parts = dict(re.findall(r"(?ms)^## (\w+)\n(.*?)(?=^## |\Z)", LEFT.read_text())) if LEFT.exists() else {}

@@ -90,8 +90,8 @@ class GapSearch {
     }
     return station;
   }
-  // Where it is at least `enough`, a lower bound that is, too: by the circle round the outline, of radius
-  // `reach`.
+  // Where the gap is at least `enough`, perhaps a lower bound of it that is, too: from the circle about the
+  // outline, of radius `reach`.
   double gap_of(const SweptStation& on, const Vec2& q, const std::vector<Vec2>& outline, double reach,
                 double enough = std::numeric_limits<double>::infinity()) {
     const Vec3 p = on.position + q.x() * on.across + q.y() * on.up;

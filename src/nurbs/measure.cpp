@@ -146,10 +146,10 @@ int flux_order(int degree) {
 // more.
 int parts_of(const Surface& surface) {
   if (!surface.is_rational()) return 1;
-  constexpr int most = 64;
-  const auto [least, largest] = std::ranges::minmax(surface.weights);
+  constexpr int most = 16;  // a file chooses the weights, and the nodes of a span are their square
+  const auto [least, largest] = std::minmax_element(surface.weights.begin(), surface.weights.end());
   int parts = 4;
-  for (double ratio = largest / least; ratio > 2 && parts < most; ratio /= 4) parts *= 2;
+  for (double ratio = *largest / *least; ratio > 2 && parts < most; ratio /= 4) parts *= 2;
   return parts;
 }
 

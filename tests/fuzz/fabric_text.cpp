@@ -20,7 +20,7 @@ class Writer {
     line("material epoxy\n density 1.2\n elastic isotropic {} {}\nend", number(100, 5000),
          number(-0.3, 0.45));
     for (const char* name : {"a", "b"}) thread(name);
-    // A braid's amplitude takes as long to fit as ten knits to build.
+    // Few braids: to fit their amplitude takes most of an execution.
     const int kind = choice(16);
     if (kind < 3)
       weave();
