@@ -186,12 +186,11 @@ class Settling {
   void fit(Cell& cell, const std::vector<yarn::Body>& bodies, const Vec3& lengths, const Repeat& repeat) {
     std::vector<nurbs::Samples> samples;
     Box3 yarns;
-    double thinnest = std::numeric_limits<double>::infinity();
+    const double thinnest = yarn::narrowest_section(bodies);
     for (const yarn::Body& body : bodies) {
       nurbs::Samples& grid = samples.emplace_back(dense_samples(body.surface));
       for (const Vec3& p : grid.points)
         if (is_beside(p, cell, lengths)) yarns.extend(p);
-      thinnest = std::min(thinnest, yarn::narrowest_section(body));
     }
     const DecimalGrid digits(rounding * thinnest);
     const double margin = cell.of_repeats->margin.value_or(usual_margin * thinnest);
@@ -235,9 +234,8 @@ void find_height(Fabric& fabric, const BuildOptions& options, int threads, Diagn
   if (!bodies) return;  // it was told
   const Parallelepiped cell = fabric.cell->shape();
   Box3 yarns;
-  double thinnest = std::numeric_limits<double>::infinity();
+  const double thinnest = yarn::narrowest_section(*bodies);
   for (const yarn::Body& body : *bodies) {
-    thinnest = std::min(thinnest, yarn::narrowest_section(body));
     for (const Vec3& p : dense_samples(body.surface).points) {
       Vec3 beside = cell.axes.own(p);
       beside.z() = 0;
@@ -288,8 +286,7 @@ std::optional<std::array<Vec3, 2>> shortest_vectors(const Fabric& fabric, const 
   wide.cell->periodic = {true, true, false};
   const std::optional<std::vector<yarn::Body>> bodies = bodies_of(wide, options, threads, repeat, unsaid);
   if (!bodies) return std::nullopt;
-  double thinnest = std::numeric_limits<double>::infinity();
-  for (const yarn::Body& body : *bodies) thinnest = std::min(thinnest, yarn::narrowest_section(body));
+  const double thinnest = yarn::narrowest_section(*bodies);
   constexpr double any = std::numeric_limits<double>::infinity();
   return oblique_repeat(*bodies, Box3(Vec3(-x, -y, -any), Vec3(2 * x, 2 * y, any)), {x, y}, near * thinnest);
 }

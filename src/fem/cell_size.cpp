@@ -59,8 +59,7 @@ double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepi
   // where yarns are far apart), less than what the one layer of them in a narrow gap has.
   constexpr double mean_share = 0.09;
   constexpr int samples = 50'000;
-  double extent = std::numeric_limits<double>::infinity();
-  for (const yarn::Body& body : bodies) extent = std::min(extent, yarn::narrowest_section(body));
+  const double extent = yarn::narrowest_section(bodies);
   SizeRules rules = cell_size_rules(bodies, sizes, coarsest, growth, extent);
   rules.raster = raster_step(bodies);
   const SizeField field = size_field(bodies, cell, rules, threads);

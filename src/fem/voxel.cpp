@@ -7,8 +7,12 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <optional>
 
+#include "cell/volume.h"
 #include "core/units.h"
+#include "fem/cell_size.h"
 #include "fem/complete_cell.h"
 #include "fem/fibre.h"
 #include "fem/materials.h"
@@ -21,6 +25,7 @@ namespace {
 
 constexpr double most_hexahedra = 2e7;
 constexpr std::int32_t no_yarn = -1;
+constexpr double usual_error = 0.05;  // of the yarns' volume, relative
 
 // Whose each voxel is, and where along that yarn about.
 struct Owners {
@@ -189,7 +194,92 @@ void fill_quality(Mesh& mesh, const VoxelGrid& grid, const ObliqueAxes& axes, do
   }
 }
 
-void say_what_is_rough(const Owners& owners, Diagnostics& diagnostics) {
+// How much of each yarn is in the box, file units cubed of the axes; nothing where it cannot be told (yarns that
+// overlap in its faces).
+std::vector<double> exact_volumes(std::span<const yarn::Body> bodies, const Box3& box) {
+  const Result<cell::Cut> cut = cell::cut(bodies, box, 1e-3 * yarn::narrowest_section(bodies));
+  if (!cut) return {};
+  const Result<cell::Division> division = cell::divide_faces(bodies, box, *cut);
+  if (!division) return {};
+  return cell::volumes_inside(bodies, box, *cut, *division);
+}
+
+// File units cubed of the axes, as above.
+double filled_volume(const VoxelGrid& grid, const Owners& owners) {
+  const auto empty = std::count(owners.yarn.begin(), owners.yarn.end(), no_yarn);
+  return grid.sides().prod() * static_cast<double>(owners.yarn.size() - static_cast<std::size_t>(empty));
+}
+
+// A count of voxels that fills the cell as the yarns do, found by doubling; with what it fills.
+struct EnoughVoxels {
+  int count = 0;
+  double volume = 0;
+};
+
+std::optional<EnoughVoxels> find_enough_voxels(std::span<const yarn::Body> bodies, const Box3& box,
+                                               const ObliqueAxes& axes, int count, double wanted) {
+  for (count *= 2;; count *= 2) {
+    const Result<VoxelGrid> grid = make_grid(box, count, most_hexahedra, "hexahedra");
+    if (!grid) return std::nullopt;
+    const double volume = filled_volume(*grid, find_owners(*grid, bodies, axes));
+    if (std::abs(volume - wanted) <= usual_error * wanted) return EnoughVoxels{count, volume};
+  }
+}
+
+std::optional<Message> too_few_voxels(std::span<const yarn::Body> bodies, const Box3& box,
+                                      const ObliqueAxes& axes, int count, double filled,
+                                      std::span<const double> volumes) {
+  const double wanted = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  if (volumes.empty() || std::abs(filled - wanted) <= usual_error * wanted) return std::nullopt;
+  const double percent = 100 / box.volume();
+  std::string text = fmt::format("yarns fill {:.1f} % of the cell, and {:.1f} % of its voxels, which are too coarse: ",
+                                 percent * wanted, percent * filled);
+  const auto enough = find_enough_voxels(bodies, box, axes, count, wanted);
+  text += enough ? fmt::format("--voxel {} fills {:.1f} %", enough->count, percent * enough->volume)
+                 : "tetrahedra follow the yarns (without --voxel)";
+  return warning(Kind::geometry, std::move(text));
+}
+
+// Yarns without a voxel though they are as large as one.
+std::optional<Message> lost_yarns(std::span<const yarn::Body> bodies, const Box3& box, const Owners& owners,
+                                  std::span<const double> volumes, double voxel) {
+  std::vector<bool> has_voxel(bodies.size(), false);
+  for (const std::int32_t yarn : owners.yarn)
+    if (yarn != no_yarn) has_voxel[static_cast<std::size_t>(yarn)] = true;
+  const yarn::Body* first = nullptr;
+  std::size_t others = 0;
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < volumes.size(); ++b) {
+    if (has_voxel[b] || volumes[b] < voxel) continue;
+    thinnest = std::min(thinnest, yarn::narrowest_section(bodies[b]));
+    if (first == nullptr)
+      first = &bodies[b];
+    else
+      ++others;
+  }
+  if (first == nullptr) return std::nullopt;
+  constexpr double least = 2;  // voxels over a section
+  return warning(Kind::geometry,
+                 fmt::format("no voxel has its middle in yarn '{}'{}: --voxel {} or more", first->name,
+                             others > 0 ? fmt::format(", nor in {} more", others) : std::string(),
+                             std::ceil(least * box.sizes().maxCoeff() / thinnest)));
+}
+
+void fill_exact_volumes(Mesh& mesh, std::span<const yarn::Body> bodies, std::span<const double> volumes,
+                        const Box3& box, const ObliqueAxes& axes, double unit) {
+  if (volumes.empty()) return;
+  const double cube = unit * unit * unit * (axes.are_of_space() ? 1 : axes.to_space().determinant());
+  const double rest = box.volume() - std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  for (Region& region : mesh.regions) {
+    const auto body = std::find_if(bodies.begin(), bodies.end(),
+                                   [&](const yarn::Body& one) { return one.name == region.name; });
+    region.exact_volume = cube * (region.kind == Region::Kind::matrix
+                                      ? rest
+                                      : volumes[static_cast<std::size_t>(body - bodies.begin())]);
+  }
+}
+
+void say_overlaps(const Owners& owners, Diagnostics& diagnostics) {
   if (owners.in_two == 0) return;
   diagnostics.add(note(Kind::geometry, fmt::format("{} hexahedra lie in two yarns that overlap; each went to "
                                                    "the nearer centre line",
@@ -209,10 +299,17 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   Result<MaterialChoice> choice =
       choose_cell_materials(fabric, bodies, options.matrix, options.physics, diagnostics);
   if (!choice) return choice.error();
-  const Owners owners = find_owners(*grid, yarn::BodiesInAxes(bodies, cell.axes).list(), cell.axes);
+  const yarn::BodiesInAxes own(bodies, cell.axes);
+  const Owners owners = find_owners(*grid, own.list(), cell.axes);
   if (std::all_of(owners.yarn.begin(), owners.yarn.end(), [](std::int32_t yarn) { return yarn == no_yarn; }))
     return at_cell(error(Kind::geometry, "no yarn enters the cell, or none is as thick as a hexahedron"));
-  say_what_is_rough(owners, diagnostics);
+  const std::vector<double> volumes = exact_volumes(own.list(), box);
+  say_overlaps(owners, diagnostics);
+  if (const auto coarse =
+          too_few_voxels(own.list(), box, cell.axes, options.count, filled_volume(*grid, owners), volumes))
+    diagnostics.add(at_cell(*coarse));
+  if (const auto lost = lost_yarns(own.list(), box, owners, volumes, grid->sides().prod()))
+    diagnostics.add(at_cell(*lost));
 
   const double unit = millimetres_per(fabric.units);
   Mesh mesh;
@@ -222,6 +319,7 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   mesh.materials = std::move(choice->materials);
   mesh.physics = options.physics;
   fill_quality(mesh, *grid, cell.axes, unit);
+  fill_exact_volumes(mesh, bodies, volumes, box, cell.axes, unit);
   if (Status done =
           complete_cell(mesh, {Box3(box.min() * unit, box.max() * unit), cell.axes}, options.periodic);
       !done)

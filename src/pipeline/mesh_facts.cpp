@@ -143,6 +143,7 @@ std::string volumes_in_words(const fem::Mesh& mesh) {
 }
 
 std::optional<Message> wrong_volume(const fem::Mesh& mesh) {
+  if (is_voxels(mesh)) return std::nullopt;  // mesh_voxels() says what they lack
   const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
   const double usual = is_brick ? 0.005 : 0.002;  // what the default size promises
   const fem::Region* worst = worst_volume(mesh);
@@ -214,7 +215,7 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
                 {"first_percentile_dihedral", has_quality ? Json(fem::first_percentile_angle(mesh)) : Json()},
                 {"max_aspect", if_true(has_quality, mesh.quality.max_aspect)},
                 {"min_scaled_jacobian", if_true(has_quality && is_brick, mesh.quality.min_scaled_jacobian)},
-                {"volume_error", if_true(has_quality, exact > 0 ? off / exact : 0)},
+                {"volume_error", if_true(has_quality || exact > 0, exact > 0 ? off / exact : 0)},
                 {"below_target", mesh.angles ? Json(mesh.angles->below) : Json()},
                 {"in_wedges", mesh.angles ? Json(mesh.angles->in_wedges) : Json()},
                 {"regions", list_json(mesh.regions,

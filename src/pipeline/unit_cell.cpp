@@ -341,8 +341,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
   const bool names_any = cell.names_axes();
   const std::optional<fabric::Repeat> repeat = builder.repeat();
   const Box3 box = box_of(fabric);
-  double thinnest = infinity;
-  for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, yarn::narrowest_section(body));
+  const double thinnest = yarn::narrowest_section(bodies);
   if (!cell.axes.are_of_space()) return periodic_vectors(job, fabric, bodies, thinnest);
   const double tolerance = tolerance_share * thinnest;
   std::array<bool, 3> periodic{};

@@ -124,6 +124,12 @@ double narrowest_section(const Body& body) {
   return result;
 }
 
+double narrowest_section(std::span<const Body> bodies) {
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const Body& body : bodies) thinnest = std::min(thinnest, narrowest_section(body));
+  return thinnest;
+}
+
 Box3 bounds(const Body& body) {
   return bounds_of(body.surface.points);
 }

@@ -129,6 +129,8 @@ double widest_section(const Body& body);
 // path. Sections smaller than a tenth of the largest one are passed over (a yarn that runs to a point); where
 // no section has an area, widest_section(). File units.
 double narrowest_section(const Body& body);
+// Of the thinnest one; infinite where there is none.
+double narrowest_section(std::span<const Body> bodies);
 
 // The body's box (of its control points).
 Box3 bounds(const Body& body);

@@ -1,6 +1,7 @@
 """Unit cells on voxels, as HDF5 and NumPy's archives: read by h5py and numpy, held against the volumes of B-splines."""
 
 import json
+import re
 import subprocess
 import unittest
 
@@ -87,6 +88,50 @@ class Voxels(Case):
                 exact = volumes.pop(phase["name"])
                 self.assertAlmostEqual(phase["fraction"] * size / exact, 1, delta=1e-3, msg=f"{name} {phase['name']}")
             self.assertFalse(volumes)
+
+    def test_too_few_voxels(self):
+        """Hexahedra of flat tows, one over their thickness: the share of the cell is that of OpenCASCADE's solids, and the count that
+        the warning names is enough. A yarn between the middles of all voxels is named, with a count that has it."""
+        text = self.folder / "flat.txt"
+        text.write_text(
+            "fabric 1\nmaterial glass\n  density 2.54\n  elastic isotropic 72000 0.2\nend\n"
+            "material resin\n  elastic isotropic 3000 0.35\nend\n"
+            "thread tow\n  section racetrack 2.2 0.13\n  material glass\nend\n"
+            "weave\n  warp tow 2 pitch 2.5\n  weft tow 2 pitch 2.5\n  draft plain\nend\n"
+            "cell repeat\n  margin 0.006\n  matrix resin\n  periodic x y\nend\n"
+        )
+
+        def shares(*options):
+            result = run("mesh", text, "--matrix", "--periodic", *options, "-o", self.folder / "flat.vtu")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            filled = re.search(r"yarns fill ([0-9.]+) % of the cell \(wanted: ([0-9.]+) %\)", result.stdout)
+            return float(filled[1]), float(filled[2]), result.stderr
+
+        filled, wanted, said = shares("--voxel", "20")
+        self.succeeds("convert", text, "--gap", "0.05", "--cut", "-o", self.folder / "cut.step")
+        parts = json.loads(self.succeeds("info", "--json", self.folder / "cut.step").stdout)["inputs"][0]["parts"]
+        with np.load(self.made(text, 20, names=("flat.npz",))[0]) as arrays:
+            size = np.prod(np.diag(arrays["vectors"]))
+        self.assertAlmostEqual(wanted, 100 * sum(part["volume"] for part in parts) / size, delta=0.05)
+        self.assertGreater(abs(filled - wanted), 0.05 * wanted)
+        remedy = re.search(r"--voxel (\d+) fills ([0-9.]+) %", said)
+        filled, wanted, said = shares("--voxel", remedy[1])
+        self.assertLess(abs(filled - wanted), 0.05 * wanted)
+        self.assertAlmostEqual(filled, float(remedy[2]), delta=0.06)
+        self.assertNotIn("too coarse", said)
+
+        text.write_text(
+            "fabric 1\nmaterial glass\n  elastic isotropic 72000 0.2\nend\n"
+            "thread thick\n  section ellipse 1 1\n  material glass\nend\n"
+            "thread thin\n  section ellipse 0.09 0.09\n  material glass\nend\n"
+            "yarn a thick\n  path chord\n    -1 0.7 0.7\n    3 0.7 0.7\n  end\nend\n"
+            "yarn b thin\n  path chord\n    -1 1.5 1.5\n    3 1.5 1.5\n  end\nend\n"
+            "cell 0 0 0  2 2 2\nend\n"
+        )
+        said = self.succeeds("mesh", text, "--voxel", "20", "-o", self.folder / "thin.vtu").stderr
+        remedy = re.search(r"no voxel has its middle in yarn 'b': --voxel (\d+) or more", said)
+        said = self.succeeds("mesh", text, "--voxel", remedy[1], "-o", self.folder / "thin.vtu").stderr
+        self.assertNotIn("no voxel", said)
 
     def test_an_oblique_cell(self):
         """Straight elliptic tows along the sum of both vectors of a rhombic cell, where its lattice repeats one: their share by hand,
