@@ -23,6 +23,10 @@ struct SystemText {
   std::vector<std::optional<double>> thicknesses;
   std::optional<double> unit;  // millimetres in one; nothing: there are no lengths
   std::optional<Unit> keeps;   // the model's own unit that it is, if any
+
+  [[nodiscard]] bool has_own(const Ini& ini, std::string_view what) const {
+    return ini.find(fmt::format("{} {}", name, what)) != nullptr;
+  }
 };
 
 // The lengths that a system gives for each of its threads; nothing where it is silent. Zero says nothing
@@ -170,9 +174,13 @@ std::vector<std::string> shortest_repeat(std::vector<std::string> names) {
   return names;
 }
 
-fabric::WeaveSystem placed(const SystemText& system, double pitch, double usual_diameter, Unit unit,
-                           ThreadNames& threads, TextReport& report) {
+fabric::WeaveSystem placed(const Ini& ini, const SystemText& system, double pitch, double usual_diameter,
+                           Unit unit, ThreadNames& threads, TextReport& report) {
   fabric::WeaveSystem made;
+  made.wif = {.section = system.name,
+              .millimetres = system.unit.value_or(length_units[0].millimetres),
+              .has_spacings = system.has_own(ini, "SPACING"),
+              .has_thicknesses = system.has_own(ini, "THICKNESS")};
   made.place = system.section->spot.place();
   made.count = static_cast<int>(system.count);
   made.pitch = pitch;
@@ -215,8 +223,8 @@ Yarns read_yarns(const Ini& ini, const Loom& loom, int ends, int picks, TextRepo
   const double weft_pitch = pitch(weft).value_or(other);
   const double usual_diameter = std::min(warp_pitch, weft_pitch) / 2;
   ThreadNames threads(yarns.threads);
-  yarns.warp = placed(warp, warp_pitch, usual_diameter, yarns.units, threads, report);
-  yarns.weft = placed(weft, weft_pitch, usual_diameter, yarns.units, threads, report);
+  yarns.warp = placed(ini, warp, warp_pitch, usual_diameter, yarns.units, threads, report);
+  yarns.weft = placed(ini, weft, weft_pitch, usual_diameter, yarns.units, threads, report);
   return yarns;
 }
 

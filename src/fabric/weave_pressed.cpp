@@ -196,14 +196,43 @@ std::string shown(const LinearDensity& density) {
                      density.is_indirect() ? rounded_up(density.value) : rounded_down(density.value));
 }
 
+// A key of a draft's system; a section for its single threads would win over it.
+std::string in_wif(const WifSystem& wif, std::string_view key, double value,
+                   std::optional<std::string_view> section_of_threads) {
+  std::string text = fmt::format("`{}={:.6g}` in [{}]", key, value, wif.section);
+  if (section_of_threads) text += fmt::format(" without [{} {}]", wif.section, *section_of_threads);
+  return text;
+}
+
+std::string spacing_in_wif(const WifSystem& wif, double millimetres) {
+  return in_wif(wif, "Spacing", rounded_up(millimetres / wif.millimetres),
+                wif.has_spacings ? std::optional("SPACING") : std::nullopt);
+}
+
+std::string thickness_in_wif(const WifSystem& wif, double millimetres) {
+  return in_wif(wif, "Thickness", rounded_down(millimetres / wif.millimetres),
+                wif.has_thicknesses ? std::optional("THICKNESS") : std::nullopt);
+}
+
 // As the text gives pitches: a distance, or so many on a length. Not closer than it is (file units).
 std::string shown_pitch(const WeaveSystem& system, double pitch, Unit units) {
+  if (system.wif) return spacing_in_wif(*system.wif, pitch * millimetres_per(units));
   if (!system.counted_on) return fmt::format("`pitch {:.6g}`", rounded_up(pitch));
   return fmt::format("`{:.6g}/{}`", rounded_down(*system.counted_on / (pitch * millimetres_per(units))),
                      *system.counted_on == 10 ? "cm" : "in");
 }
 
+// A draft has one thickness a system: all threads as thin as the thinnest.
+std::string thinner_in_wif(const System& system, double by, Unit units) {
+  double least = system.thickest;
+  for (const WovenThread& woven : system.threads) least = std::min(least, woven.size.height);
+  return thickness_in_wif(*system.text->wif, by * least * millimetres_per(units));
+}
+
 std::string thinner_threads(const LooseCloth& cloth, double by) {
+  if (cloth.warp.text->wif)
+    return fmt::format("{} and {}", thinner_in_wif(cloth.warp, by, cloth.units),
+                       thinner_in_wif(cloth.weft, by, cloth.units));
   std::string text;
   std::set<const Thread*> seen;
   for (const System* system : {&cloth.warp, &cloth.weft})
