@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/critical.h"
 #include "contact/overlay.h"
 #include "contact/shared_space.h"
+#include "contact/spot.h"
 #include "core/bounds.h"
 #include "core/plane.h"
 
@@ -160,10 +160,14 @@ class DeepMeasurer {
     contact.on_b = parting.q;
     contact.direction = n;
     contact.gap = -parting.distance;
-    if (!settle(space, parting, n, contact)) close_in(parting, n, contact);
+    if (!settle_all(space, n, contact)) {
+      if (!settle(space, parting, n, contact)) close_in(parting, n, contact);
+      Minimum minimum{{}, {}, contact.on_a, contact.on_b, contact.direction, contact.gap};
+      if (contact.site_a) minimum.site_a = *contact.site_a;
+      if (contact.site_b) minimum.site_b = *contact.site_b;
+      contact.spots.push_back(minimum);
+    }
     contact.at = 0.5 * (contact.on_a + contact.on_b);
-    contact.spots.push_back(
-        {contact.site_a, contact.site_b, contact.on_a, contact.on_b, contact.direction, contact.gap});
     contact.area = area_inside();
     contacts.push_back(contact);
   }
@@ -184,24 +188,63 @@ class DeepMeasurer {
     return k == Mesh::cut ? nullptr : &model_.faces()[static_cast<std::size_t>(k)];
   }
 
-  // The parting as a critical pair of the surfaces, when it is one: then it is exact, and n the easiest
-  // direction near it.
-  bool settle(const SharedSpace& space, const Parting& parting, const Vec3& n, Contact& contact) const {
+  // The partings as critical pairs of the surfaces, when all of them are: the least translation ends all of
+  // them at once, and is exact. One along which the two would be deeper elsewhere is none.
+  bool settle_all(const SharedSpace& space, const Vec3& n, Contact& contact) const {
+    constexpr double share = 0.95;  // a mesh is not the surface
+    std::vector<Spot> spots;
+    for (const Parting& late : space.late_partings(n, share)) {
+      const std::optional<Spot> spot = critical_at(late, n);
+      if (!spot) return false;
+      const double near = 1e-3 * std::min(model_.thickness(a_), model_.thickness(b_));
+      if (std::none_of(spots.begin(), spots.end(), [&](const Spot& other) {
+            return (other.p - spot->p).norm() < near && (other.q - spot->q).norm() < near;
+          }))
+        spots.push_back(*spot);
+    }
+    if (spots.empty()) return false;
+    std::stable_sort(spots.begin(), spots.end(),
+                     [](const Spot& x, const Spot& y) { return x.depth > y.depth; });
+    const std::optional<Vec3> shift = parting_shift(spots, touching_);
+    if (!shift || !(shift->norm() > touching_)) return false;
+    const double depth = shift->norm();
+    if (space.parting(*shift / depth).distance > 1.005 * depth) return false;
+    place_at(spots.front(), contact);
+    contact.direction = *shift / depth;
+    contact.gap = -depth;
+    for (const Spot& spot : spots) contact.spots.push_back(minimum_of(spot));
+    return true;
+  }
+
+  static void place_at(const Spot& spot, Contact& contact) {
+    contact.on_a = spot.p;
+    contact.on_b = spot.q;
+    if (spot.face_a->is_side) contact.site_a = spot.site_a;
+    if (spot.face_b->is_side) contact.site_b = spot.site_b;
+  }
+
+  // The critical pair of the surfaces that belongs to a parting along n.
+  [[nodiscard]] std::optional<Spot> critical_at(const Parting& parting, const Vec3& n) const {
     const Face *fa = face_at(mesh_a_, parting.a), *fb = face_at(mesh_b_, parting.b);
-    if (fa == nullptr || fb == nullptr) return false;
+    if (fa == nullptr || fb == nullptr) return std::nullopt;
     const std::optional<Critical> found = find_critical(*fa, site_of(mesh_a_, parting.a, parting.p), *fb,
                                                         site_of(mesh_b_, parting.b, parting.q));
     if (!found || found->normal.dot(n) < 0.7 ||
         std::abs(found->depth - parting.distance) > 0.12 * parting.distance)
-      return false;
+      return std::nullopt;
+    return Spot{*found, fa, fb};
+  }
+
+  // The parting as a critical pair of the surfaces, when it is one: then it is exact, and n the easiest
+  // direction near it.
+  bool settle(const SharedSpace& space, const Parting& parting, const Vec3& n, Contact& contact) const {
+    const std::optional<Spot> found = critical_at(parting, n);
+    if (!found) return false;
     // A line along the normal on which the two are deeper in each other: this is no largest one.
     if (space.parting(found->normal).distance > found->depth * 1.005) return false;
-    contact.on_a = found->p;
-    contact.on_b = found->q;
+    place_at(*found, contact);
     contact.direction = found->normal;
     contact.gap = -found->depth;
-    if (fa->is_side) contact.site_a = found->site_a;
-    if (fb->is_side) contact.site_b = found->site_b;
     return true;
   }
 

@@ -7,10 +7,9 @@
 #include <set>
 
 #include "contact/certify.h"
-#include "contact/critical.h"
 #include "contact/deep.h"
-#include "contact/least_shift.h"
 #include "contact/overlay.h"
+#include "contact/spot.h"
 #include "core/bounds.h"
 
 namespace selvage::contact {
@@ -44,13 +43,6 @@ std::vector<std::uint32_t> covering_range(const std::set<std::uint32_t>& used, s
 // Deeper than this share of the thickness two facing sheets do not tell it all.
 constexpr double deep_share = 0.3;
 
-// A local minimum of the gap.
-struct Spot : Critical {
-  const Face* face_a = nullptr;
-  const Face* face_b = nullptr;
-  bool is_critical = true;  // else on an edge or a border
-};
-
 class Measurer {
  public:
   Measurer(const CellModel& model, const Cluster& cluster, double reach, double resolution)
@@ -71,11 +63,16 @@ class Measurer {
     // With all of their cells.
     if (is_deep_ && !(model_.is_whole(body_a_) && model_.is_whole(body_b_))) return {{}, 0.0, true};
     if (is_deep_) look_deep();
-    if (contacts_.empty()) look_at_nearest({});
+    // Lines do not meet every least gap: what is nearer than what they found.
+    if (!is_deep_ && !is_overlap()) look_at_nearest({});
     return {std::move(contacts_), unsettled_, is_deep_};
   }
 
  private:
+  [[nodiscard]] bool is_overlap() const {
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [](const Contact& contact) { return contact.is_overlap(); });
+  }
   [[nodiscard]] const Cell& cell(std::uint32_t k) const { return model_.cells()[k]; }
 
   // From a to b, where they overlap or are nearest.
@@ -390,13 +387,6 @@ class Measurer {
     return n;
   }
 
-  [[nodiscard]] static Minimum minimum_of(const Spot& spot) {
-    Minimum minimum{{}, {}, spot.p, spot.q, spot.normal, -spot.depth};
-    if (spot.face_a->is_side) minimum.site_a = spot.site_a;
-    if (spot.face_b->is_side) minimum.site_b = spot.site_b;
-    return minimum;
-  }
-
   // The deepest comes first.
   [[nodiscard]] Contact contact_of(const std::vector<Spot>& spots) const {
     const Spot& spot = spots.front();
@@ -415,27 +405,8 @@ class Measurer {
     return contact;
   }
 
-  // The least translation that ends the overlap at all its spots: each asks for its own depth along its own
-  // normal, and both are taken anew with the second yarn where the translation puts it.
   void part_all(const std::vector<Spot>& spots, Contact& contact) const {
-    std::vector<ShiftDemand> demands;
-    for (const Spot& spot : spots)
-      if (spot.depth > touching_) demands.push_back({spot.normal, spot.depth});
-    std::optional<Vec3> shift = least_shift(demands);
-    for (int round = 0; round < 20 && shift; ++round) {
-      for (std::size_t k = 0; k < demands.size(); ++k) {
-        const Spot& spot = spots[k];
-        if (!spot.is_critical) continue;
-        const std::optional<Critical> found =
-            find_critical(*spot.face_a, spot.site_a, *spot.face_b, spot.site_b, *shift);
-        if (found && found->normal.dot(spot.normal) > 0.7)
-          demands[k] = {found->normal, found->depth + found->normal.dot(*shift)};
-      }
-      const std::optional<Vec3> next = least_shift(demands);
-      const bool settled = next && (*next - *shift).norm() < 1e-10 * shift->norm();
-      shift = next;
-      if (settled) break;
-    }
+    const std::optional<Vec3> shift = parting_shift(spots, touching_);
     if (!shift || !(shift->norm() > touching_)) return;
     contact.gap = -shift->norm();
     contact.direction = shift->normalized();

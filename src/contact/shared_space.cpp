@@ -208,6 +208,27 @@ class SharedSpace::View {
     return closer_last.distance > last.distance ? parting(closer, closer_last) : parting(raster, last);
   }
 
+  [[nodiscard]] std::vector<Parting> late_partings(int lines, double share) const {
+    const Rectangle whole(Vec2(box_.min().head<2>()), Vec2(box_.max().head<2>()));
+    if (!(whole.sizes().minCoeff() > 0.0)) return {};
+    const Rays raster(whole, lines);
+    std::vector<Last> last(raster.size());
+    double largest = 0;
+    for_each_shared(raster, [&](const Chord& x, const Chord& y) {
+      Last& here = last[x.in.line];
+      if (x.out.height - y.in.height > here.distance) here = {x.out.height - y.in.height, x.out, y.in};
+      largest = std::max(largest, here.distance);
+    });
+    std::vector<Parting> peaks;
+    for (std::size_t k = 0; k < last.size(); ++k)
+      if (last[k].distance > 0 && last[k].distance >= share * largest &&
+          raster.all_about(k, 1, [&](std::size_t other) { return last[other].distance <= last[k].distance; }))
+        peaks.push_back(parting(raster, last[k]));
+    std::stable_sort(peaks.begin(), peaks.end(),
+                     [](const Parting& x, const Parting& y) { return x.distance > y.distance; });
+    return peaks;
+  }
+
   // Runs of shared space on lines, joined where neighbouring lines' runs overlap.
   [[nodiscard]] std::vector<std::vector<Vec3>> pieces(int lines) const {
     const Rectangle whole(Vec2(box_.min().head<2>()), Vec2(box_.max().head<2>()));
@@ -299,6 +320,10 @@ class SharedSpace::View {
 
 Parting SharedSpace::parting(const Vec3& direction) const {
   return View(*this, direction).parting(fine);
+}
+
+std::vector<Parting> SharedSpace::late_partings(const Vec3& direction, double share) const {
+  return View(*this, direction).late_partings(fine, share);
 }
 
 std::vector<std::vector<Vec3>> SharedSpace::pieces(const Vec3& direction) const {

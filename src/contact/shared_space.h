@@ -49,6 +49,10 @@ class SharedSpace {
 
   [[nodiscard]] Parting parting(const Vec3& direction) const;
 
+  // Where they part later than on the lines beside it, and not much earlier than where they part last: at
+  // least `share` of that distance, which is between 0 and 1. The last one first.
+  [[nodiscard]] std::vector<Parting> late_partings(const Vec3& direction, double share) const;
+
   // The direction in which the least movement parts them, by compass search from the best of `starts` (unit
   // vectors).
   [[nodiscard]] Vec3 easiest_direction(const std::vector<Vec3>& starts) const;

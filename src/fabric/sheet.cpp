@@ -190,11 +190,11 @@ Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Construct
     const auto counted = [&](int axis) {
       return static_cast<int>(std::lround(sample.size[axis] / unit[axis]));
     };
-    if (auto* const braid = std::get_if<Braid>(&made.items.front())) {
+    if (const auto* const planar = std::get_if<Braid>(&made.items.front())) {
       sample.is_oblique = true;
       // Beside the crossings, and as far beyond as a yarn gets that begins in the repeat.
       sample.low = Vec3(0.137 * sample.size.x(), 0.0731 * sample.size.y(), 0.0);
-      const double slope = std::tan(braid->angle * pi / 180);
+      const double slope = std::tan(planar->angle * pi / 180);
       beyond = Vec3(sample.size.y() / slope, sample.size.x() * slope, 0.0);
     } else if (auto* const weave = std::get_if<Weave>(&made.items.front())) {
       // Binders lie in gaps that the cloth of the text has.

@@ -17,7 +17,6 @@
 #include <span>
 #include <utility>
 
-#include "core/rounding.h"
 #include "fabric/weave_construction.h"
 #include "fabric/yarn_spec.h"
 
@@ -165,20 +164,12 @@ bool WeaveConstruction::is_over_dense() const {
 
 Message WeaveConstruction::too_thick(LooseCloth loose) const {
   const double wanted = *std::exchange(loose.thickness, std::nullopt);
-  std::string what;
-  if (std::optional<PressedCloth> pressed = press_cloth(loose)) {
-    double thick = pressed->thickness(), thin = wanted;
-    for (int step = 0; step < 6; ++step) {
-      loose.thickness = 0.5 * (thin + thick);
-      (press_cloth(loose) ? thick : thin) = *loose.thickness;
-    }
-    what =
-        fmt::format("they are pressed to {:.6g} {} at the least", rounded_up(thick), name_of(fabric_.units));
-  } else {
-    what = remedies_for(loose);
-  }
-  return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted,
-                                           name_of(fabric_.units), what))
+  const std::string_view unit = name_of(fabric_.units);
+  const std::optional<double> least = least_thickness(loose, wanted);
+  return error(Kind::geometry,
+               fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted, unit,
+                           least ? fmt::format("they are pressed to {:.6g} {} at the least", *least, unit)
+                                 : remedies_for(loose)))
       .placed(weave_.place);
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/overloaded.h"
 #include "fabric/interlacing.h"
 
 namespace selvage::fabric {
@@ -310,7 +311,31 @@ yarn::Section pressed_section(const yarn::Section& section, const yarn::SectionS
   return yarn::Power{width, height, state.exponent};
 }
 
-Pressed press(const PressedSystems& systems) {
+namespace {
+
+// A ratio without the rounding that its unit left: in 33 bits.
+double without_rounding(double ratio) {
+  constexpr int bits = 33;
+  int exponent = 0;
+  const double fraction = std::frexp(ratio, &exponent);
+  return std::ldexp(std::round(std::ldexp(fraction, bits)), exponent - bits);
+}
+
+PressedSystems in_ratios(PressedSystems systems, double unit) {
+  const auto ratio = [&](double length) { return without_rounding(length / unit); };
+  for (PressedSystem* system : {&systems.warp, &systems.weft}) {
+    system->section = with_lengths(system->section, ratio);
+    for (double* length : {&system->size.width, &system->size.height, &system->pitch, &system->room})
+      *length = ratio(*length);
+    system->least_area = without_rounding(system->least_area);
+  }
+  systems.clearance = ratio(systems.clearance);
+  if (systems.thickness) systems.thickness = ratio(*systems.thickness);
+  return systems;
+}
+
+// The systems' mean thickness is 1.
+Pressed press_in_ratios(const PressedSystems& systems) {
   const Energy energy(systems);
   VectorXd best;
   double least = std::numeric_limits<double>::infinity();
@@ -332,6 +357,31 @@ Pressed press(const PressedSystems& systems) {
   const State warp = state_of(systems.warp, systems.weft.room, pressed.warp),
               weft = state_of(systems.weft, systems.warp.room, pressed.weft);
   pressed.is_sound = is_sound(systems.warp, warp) && is_sound(systems.weft, weft);
+  return pressed;
+}
+
+}  // namespace
+
+yarn::Section with_lengths(const yarn::Section& section, const std::function<double(double)>& change) {
+  return std::visit(
+      Overloaded{
+          [](const yarn::Polygon& polygon) -> yarn::Section { return polygon; },
+          [&](const yarn::Circle& circle) -> yarn::Section { return yarn::Circle{change(circle.diameter)}; },
+          [&](const yarn::Loop7& loop) -> yarn::Section { return yarn::Loop7{change(loop.diameter)}; },
+          [&](auto flat) -> yarn::Section {
+            flat.width = change(flat.width);
+            flat.height = change(flat.height);
+            return flat;
+          },
+      },
+      section);
+}
+
+Pressed press(const PressedSystems& systems) {
+  const double unit = 0.5 * (systems.warp.size.height + systems.weft.size.height);
+  Pressed pressed = press_in_ratios(in_ratios(systems, unit));
+  for (PressedYarn* yarn : {&pressed.warp, &pressed.weft})
+    for (double* length : {&yarn->height, &yarn->flat, &yarn->radius}) *length *= unit;
   return pressed;
 }
 

@@ -12,6 +12,7 @@
 // parallel curves of their axes, known in closed form at every place: the condition is exact.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "yarn/outline.h"
@@ -59,7 +60,11 @@ yarn::Section pressed_section(const yarn::Section& section, const yarn::SectionS
                               const PressedYarn& pressed);
 bool can_be_pressed(const yarn::Section& section);
 
-// The state of least energy. Where there is no room at all, what comes nearest to it.
+// Each of its lengths changed; a polygon stays as it is.
+yarn::Section with_lengths(const yarn::Section& section, const std::function<double(double)>& change);
+
+// The state of least energy. Where there is no room at all, what comes nearest to it. The same in every unit:
+// solved in ratios to the yarns' mean thickness, of ten digits.
 Pressed press(const PressedSystems& systems);
 
 // The densest that round fibres lie: pi / (2 sqrt(3)), hexagons.

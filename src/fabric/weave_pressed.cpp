@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/overloaded.h"
 #include "core/rounding.h"
 #include "fabric/weave_press.h"
 
@@ -139,21 +138,6 @@ std::string pressing_of(const WovenThread& loose, const WovenThread& pressed, Un
 
 namespace {
 
-yarn::Section scaled(const yarn::Section& section, double by) {
-  return std::visit(
-      Overloaded{
-          [](const yarn::Polygon& polygon) -> yarn::Section { return polygon; },
-          [&](const yarn::Circle& circle) -> yarn::Section { return yarn::Circle{by * circle.diameter}; },
-          [&](const yarn::Loop7& loop) -> yarn::Section { return yarn::Loop7{by * loop.diameter}; },
-          [&](auto flat) -> yarn::Section {
-            flat.width *= by;
-            flat.height *= by;
-            return flat;
-          },
-      },
-      section);
-}
-
 // A cloth with other pitches or thinner yarns.
 struct Easier {
   double warp_pitch = 1, weft_pitch = 1, yarns = 1;  // factors
@@ -171,7 +155,9 @@ bool has_room(const LooseCloth& cloth, const Easier& easier) {
   changed.weft.room *= easier.weft_pitch;
   changed.weft.closest *= easier.weft_pitch;
   for (System* system : {&changed.warp, &changed.weft})
-    change_sections(*system, [&](const WovenThread& woven) { return scaled(woven.section, easier.yarns); });
+    change_sections(*system, [&](const WovenThread& woven) {
+      return with_lengths(woven.section, [&](double length) { return easier.yarns * length; });
+    });
   return press_cloth(changed).has_value();
 }
 
@@ -255,6 +241,26 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
 }
 
 }  // namespace
+
+std::optional<double> least_thickness(LooseCloth cloth, double too_thin) {
+  cloth.thickness.reset();
+  const std::optional<PressedCloth> free = press_cloth(cloth);
+  if (!free) return std::nullopt;
+  const auto has_room_at = [&](double thickness) {
+    cloth.thickness = thickness;
+    return press_cloth(cloth).has_value();
+  };
+  constexpr double near = 5e-4;
+  double thick = free->thickness(), thin = too_thin;
+  while (thick - thin > near * thick) {
+    const double middle = 0.5 * (thin + thick);
+    (has_room_at(middle) ? thick : thin) = middle;
+  }
+  // As it will be written.
+  double least = rounded_up(thick);
+  while (!has_room_at(least) && least < free->thickness()) least = rounded_up((1 + 2 * near) * least);
+  return least;
+}
 
 std::string remedies_for(const LooseCloth& cloth) {
   const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;

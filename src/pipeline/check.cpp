@@ -29,7 +29,6 @@ struct Examined {
   solid::SolidCheck solids;
   std::vector<solid::BrepCheck> breps;
   PieceFindings pieces;
-  double tolerance = 0;  // file units
 };
 
 std::string_view yes_no(bool yes) {
@@ -48,11 +47,11 @@ std::vector<Message> defects_of(const Examined& found, std::size_t i, Unit units
   if (defects.empty() && std::abs(brep.volume - body.volume) > volume_agreement * std::abs(body.volume))
     say(fmt::format("yarn '{}': the solid's volume is {:.6g}, the B-spline's {:.6g} {}^3", body.name,
                     brep.volume, body.volume, name_of(units)));
-  if (body.tube_error > found.tolerance)
+  if (body.tube_error > body.tolerance)
     say(
         fmt::format("yarn '{}': the surface may be {:.3g} {} away from the exact tube, {:.3g} are allowed; "
                     "raise the file's tolerance or use --tolerance",
-                    body.name, body.tube_error, name_of(units), found.tolerance));
+                    body.name, body.tube_error, name_of(units), body.tolerance));
   for (const yarn::TightBend& bend : body.tight_bends)
     say(fmt::format("yarn '{}' bends with a radius of {:.4g} {} where its section needs {:.4g}: its surface "
                     "folds over itself",
@@ -147,7 +146,6 @@ std::optional<Examined> examine(Job& job, const fabric::Fabric& fabric) {
   if (!pieces) return std::nullopt;
   found.pieces = std::move(*pieces);
   if (found.bodies.empty()) return found;
-  found.tolerance = fabric::tolerance_of(fabric, job.build_options());
   std::optional<solid::SolidCheck> solids = check_of(job, found.bodies);
   if (!solids) return std::nullopt;
   Result<std::vector<solid::BrepCheck>> breps = solid::check_breps(found.bodies);

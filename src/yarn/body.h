@@ -97,6 +97,7 @@ struct Body : BodyLabel {
   double volume = 0;      // enclosed, of the B-spline itself; with ends `none` as if the ends were planar
   double end_area = 0;    // of the first section (for grids: of the first section's B-spline)
   double tube_error = 0;  // bound on the distance to the exact swept section; 0 for a grid
+  double tolerance = 0;   // what that distance may be
   double path_miss =
       0;  // the centre line's largest distance from the points that it was made after (loop paths)
   double min_bend_radius = 0;          // of the path; infinity for a straight one

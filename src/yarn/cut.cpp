@@ -41,6 +41,7 @@ Body piece_of(const Body& whole, nurbs::Surface surface, int number) {
   piece.name = fmt::format("{}.part{}", whole.name, number);
   piece.quarters = whole.quarters;
   piece.tube_error = whole.tube_error;
+  piece.tolerance = whole.tolerance;
   piece.surface = std::move(surface);
   piece.axis = nurbs::sub_curve(whole.axis, piece.surface.first_v(), piece.surface.last_v());
   return piece;

@@ -192,6 +192,7 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   body.closed_along = path.closed;
   body.quarters = channels.outline().quarters;
   body.tube_error = other_errors + fit->error;
+  body.tolerance = spec.tolerance;
   return {};
 }
 
