@@ -1,4 +1,4 @@
-// Numbers of remedies: short, and on the side on which they cure.
+// Numbers of remedies: short, and on the side on which they cure. Lengths as ratios, the same in every unit.
 #pragma once
 
 #include <cmath>
@@ -21,6 +21,15 @@ inline double rounded_up(double value) {
 inline double rounded_down(double value) {
   const double unit = detail::unit_of_third_digit(value);
   return std::floor(value / unit + 1e-9) * unit;
+}
+
+// A length in units of another one, in 33 bits: without the rounding that the unit of both has left, which a
+// solver that stops or chooses somewhere makes large.
+inline double in_units_of(double unit, double length) {
+  constexpr int bits = 33;
+  int exponent = 0;
+  const double fraction = std::frexp(length / unit, &exponent);
+  return std::ldexp(std::round(std::ldexp(fraction, bits)), exponent - bits);
 }
 
 }  // namespace selvage

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/overloaded.h"
+#include "core/rounding.h"
 #include "fabric/interlacing.h"
 
 namespace selvage::fabric {
@@ -313,21 +313,13 @@ yarn::Section pressed_section(const yarn::Section& section, const yarn::SectionS
 
 namespace {
 
-// A ratio without the rounding that its unit left: in 33 bits.
-double without_rounding(double ratio) {
-  constexpr int bits = 33;
-  int exponent = 0;
-  const double fraction = std::frexp(ratio, &exponent);
-  return std::ldexp(std::round(std::ldexp(fraction, bits)), exponent - bits);
-}
-
 PressedSystems in_ratios(PressedSystems systems, double unit) {
-  const auto ratio = [&](double length) { return without_rounding(length / unit); };
+  const auto ratio = [&](double length) { return in_units_of(unit, length); };
   for (PressedSystem* system : {&systems.warp, &systems.weft}) {
-    system->section = with_lengths(system->section, ratio);
+    system->section = yarn::with_lengths(system->section, ratio);
     for (double* length : {&system->size.width, &system->size.height, &system->pitch, &system->room})
       *length = ratio(*length);
-    system->least_area = without_rounding(system->least_area);
+    system->least_area = in_units_of(1, system->least_area);
   }
   systems.clearance = ratio(systems.clearance);
   if (systems.thickness) systems.thickness = ratio(*systems.thickness);
@@ -361,21 +353,6 @@ Pressed press_in_ratios(const PressedSystems& systems) {
 }
 
 }  // namespace
-
-yarn::Section with_lengths(const yarn::Section& section, const std::function<double(double)>& change) {
-  return std::visit(
-      Overloaded{
-          [](const yarn::Polygon& polygon) -> yarn::Section { return polygon; },
-          [&](const yarn::Circle& circle) -> yarn::Section { return yarn::Circle{change(circle.diameter)}; },
-          [&](const yarn::Loop7& loop) -> yarn::Section { return yarn::Loop7{change(loop.diameter)}; },
-          [&](auto flat) -> yarn::Section {
-            flat.width = change(flat.width);
-            flat.height = change(flat.height);
-            return flat;
-          },
-      },
-      section);
-}
 
 Pressed press(const PressedSystems& systems) {
   const double unit = 0.5 * (systems.warp.size.height + systems.weft.size.height);

@@ -12,7 +12,6 @@
 // parallel curves of their axes, known in closed form at every place: the condition is exact.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "yarn/outline.h"
@@ -59,9 +58,6 @@ struct Pressed {
 yarn::Section pressed_section(const yarn::Section& section, const yarn::SectionSize& size,
                               const PressedYarn& pressed);
 bool can_be_pressed(const yarn::Section& section);
-
-// Each of its lengths changed; a polygon stays as it is.
-yarn::Section with_lengths(const yarn::Section& section, const std::function<double(double)>& change);
 
 // The state of least energy. Where there is no room at all, what comes nearest to it. The same in every unit:
 // solved in ratios to the yarns' mean thickness, of ten digits.

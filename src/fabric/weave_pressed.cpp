@@ -156,7 +156,7 @@ bool has_room(const LooseCloth& cloth, const Easier& easier) {
   changed.weft.closest *= easier.weft_pitch;
   for (System* system : {&changed.warp, &changed.weft})
     change_sections(*system, [&](const WovenThread& woven) {
-      return with_lengths(woven.section, [&](double length) { return easier.yarns * length; });
+      return yarn::with_lengths(woven.section, [&](double length) { return easier.yarns * length; });
     });
   return press_cloth(changed).has_value();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -20,6 +21,9 @@ struct SectionSize {
 // The section's own size (a polygon's: of its box about the origin's axes). Zeros for a circle without
 // diameter.
 SectionSize nominal_size(const Section& section);
+
+// Each of its lengths changed.
+Section with_lengths(const Section& section, const std::function<double(double)>& change);
 
 // Exact enclosed area of the section brought to this size.
 double area(const Section& section, const SectionSize& size);

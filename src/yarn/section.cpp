@@ -69,6 +69,23 @@ SectionSize nominal_size(const Section& section) {
                     section);
 }
 
+Section with_lengths(const Section& section, const std::function<double(double)>& change) {
+  return std::visit(Overloaded{
+                        [&](const Circle& s) -> Section { return Circle{change(s.diameter)}; },
+                        [&](const Loop7& s) -> Section { return Loop7{change(s.diameter)}; },
+                        [&](Polygon s) -> Section {
+                          for (Vec2& c : s.corners) c = {change(c.x()), change(c.y())};
+                          return s;
+                        },
+                        [&](auto s) -> Section {
+                          s.width = change(s.width);
+                          s.height = change(s.height);
+                          return s;
+                        },
+                    },
+                    section);
+}
+
 double area(const Section& section, const SectionSize& size) {
   const double w = size.width, h = size.height;
   return std::visit(
