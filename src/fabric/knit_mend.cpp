@@ -269,7 +269,8 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& given, int max_ste
   problem.measure = scale;
   problem.max_steps = max_steps;
   problem.relaxes = yarn.relaxes;
-  if (ties_[0].is_periodic()) problem.repeat = without_rounding({0, field.shape.course * field.chart.height(1), 0});
+  if (ties_[0].is_periodic())
+    problem.repeat = without_rounding({0, field.shape.course * field.chart.height(1), 0});
   const bool goes_on = ties_[1].is_periodic();
   for (long long l = 0; l < courses * ends_; ++l) {
     const long long c = l / ends_;

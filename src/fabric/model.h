@@ -248,8 +248,8 @@ Yarn yarn_like(const yarn::Body& body);
 
 // How a WIF draft says a system's lengths, for remedies in its words.
 struct WifSystem {
-  std::string section;     // WARP
-  double millimetres = 1;  // in one of its units
+  std::string section;                                 // WARP
+  double millimetres = 1;                              // in one of its units
   bool has_spacings = false, has_thicknesses = false;  // in sections of their own, which win: [WARP SPACING]
 };
 
@@ -259,8 +259,8 @@ struct WeaveSystem {
   TextPlace place;
   int count = 0;
   double pitch = 0;
-  std::optional<double> counted_on;  // mm: the text counts yarns on a length, an inch or 10 mm
-  std::optional<WifSystem> wif;
+  std::optional<double> counted_on{};  // mm: the text counts yarns on a length, an inch or 10 mm
+  std::optional<WifSystem> wif{};
 };
 
 struct Draft {

@@ -194,8 +194,8 @@ void fill_quality(Mesh& mesh, const VoxelGrid& grid, const ObliqueAxes& axes, do
   }
 }
 
-// How much of each yarn is in the box, file units cubed of the axes; nothing where it cannot be told (yarns that
-// overlap in its faces).
+// How much of each yarn is in the box, file units cubed of the axes; nothing where it cannot be told (yarns
+// that overlap in its faces).
 std::vector<double> exact_volumes(std::span<const yarn::Body> bodies, const Box3& box) {
   const Result<cell::Cut> cut = cell::cut(bodies, box, 1e-3 * yarn::narrowest_section(bodies));
   if (!cut) return {};
@@ -232,8 +232,9 @@ std::optional<Message> too_few_voxels(std::span<const yarn::Body> bodies, const 
   const double wanted = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   if (volumes.empty() || std::abs(filled - wanted) <= usual_error * wanted) return std::nullopt;
   const double percent = 100 / box.volume();
-  std::string text = fmt::format("yarns fill {:.1f} % of the cell, and {:.1f} % of its voxels, which are too coarse: ",
-                                 percent * wanted, percent * filled);
+  std::string text = fmt::format(
+      "yarns fill {:.1f} % of the cell, and {:.1f} % of its voxels, which are too coarse: ", percent * wanted,
+      percent * filled);
   const auto enough = find_enough_voxels(bodies, box, axes, count, wanted);
   text += enough ? fmt::format("--voxel {} fills {:.1f} %", enough->count, percent * enough->volume)
                  : "tetrahedra follow the yarns (without --voxel)";

@@ -24,8 +24,8 @@ struct VoxelOptions {
 // The mesh of the fabric's cell (there must be one), nodes in mm; hexahedra as near to cubes as whole numbers
 // along the sides allow. One region a yarn that has a hexahedron, in the order of `bodies`, then the matrix.
 // A hexahedron is its yarn's whose inside its middle lies in; of two that overlap the one with the nearer
-// centre line, with a note. Warnings, at the cell: where the voxels are more than 5 % off the yarns' volume in
-// it (with a count that is not, found by doubling), and of yarns as large as a voxel that have none.
+// centre line, with a note. Warnings, at the cell: where the voxels are more than 5 % off the yarns' volume
+// in it (with a count that is not, found by doubling), and of yarns as large as a voxel that have none.
 // Orientations, fibre fractions, sets and equations as in every cell (fem/fibre.h, fem/complete_cell.h).
 // Region::exact_volume is 0 where yarns overlap in the cell's faces. Errors: usage (count), limit (more than
 // 20 million hexahedra), geometry (no yarn in the cell; a matrix is wanted but not named), and those of

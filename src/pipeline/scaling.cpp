@@ -49,7 +49,8 @@ void convert_lengths(yarn::Body& body, Unit from, Unit to) {
   scale.apply(body.at);
   scale.apply(body.start.origin);
   scale.apply(body.end.origin);
-  for (double* length : {&body.length, &body.tube_error, &body.tolerance, &body.min_bend_radius, &body.resolution})
+  for (double* length :
+       {&body.length, &body.tube_error, &body.tolerance, &body.min_bend_radius, &body.resolution})
     *length = scale(*length);
   body.twist = Ratio{scale.down, scale.up}(body.twist);
   body.end_area = scale(scale(body.end_area));
