@@ -58,13 +58,13 @@ class Measurer {
   Measured run() {
     const Vec3 n = facing();
     if (n.squaredNorm() > 0.0) look_along(n);
-    if (!is_deep_ && (contacts_.empty() || !unsettled_pairs_.empty())) look_at_nearest(unsettled_pairs_);
+    // Lines do not meet every least gap.
+    if (!is_deep_ && !is_overlap()) look_at_nearest();
     if (!is_deep_) prove();
     // With all of their cells.
     if (is_deep_ && !(model_.is_whole(body_a_) && model_.is_whole(body_b_))) return {{}, 0.0, true};
     if (is_deep_) look_deep();
-    // Lines do not meet every least gap: what is nearer than what they found.
-    if (!is_deep_ && !is_overlap()) look_at_nearest({});
+    if (contacts_.empty()) look_at_nearest();
     return {std::move(contacts_), unsettled_, is_deep_};
   }
 
@@ -170,7 +170,6 @@ class Measurer {
       if (!settle(overlay, line)) unsettled.push_back(line);
     for (const std::size_t line : unsettled) settle_at_crease(overlay, line, region);
     gather(overlay, region, regions);
-    note_unsettled(overlay, unsettled);
     known_.emplace(overlay, region);
   }
 
@@ -451,26 +450,12 @@ class Measurer {
     return sum;
   }
 
-  // Near pairs with a cell of a peak that is no spot, and may be nearer than what was found.
-  void note_unsettled(const Overlay& overlay, const std::vector<std::size_t>& lines) {
-    double deepest = -infinity;
-    for (const Spot& spot : spots_) deepest = std::max(deepest, spot.depth);
-    if (deepest > touching_) return;
-    for (const std::size_t line : lines) {
-      if (overlay.depth(line) < deepest - slack()) continue;
-      const std::uint32_t a = overlay.on_a(line).cell, b = overlay.on_b(line).cell;
-      for (const NearPair& pair : cluster_)
-        if (pair.a == a && pair.b == b) unsettled_pairs_.push_back(pair);
-    }
-  }
-
-  // Where the surfaces do not face each other: the nearest points of two cells. All pairs where none are
-  // given.
-  void look_at_nearest(const Cluster& some) {
+  // What is nearer than all that was found: the nearest points of two cells.
+  void look_at_nearest() {
     double best = reach_;
     for (const Contact& contact : contacts_) best = std::min(best, contact.gap);
     std::optional<Spot> nearest;
-    Cluster pairs = some.empty() ? cluster_ : some;
+    Cluster pairs = cluster_;
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const NearPair& x, const NearPair& y) { return x.low < y.low; });
     for (const NearPair& pair : pairs) {
@@ -552,7 +537,6 @@ class Measurer {
   std::vector<Spot> spots_;
   std::vector<Contact> contacts_;
   bool is_deep_ = false;
-  Cluster unsettled_pairs_;
   std::optional<Known> known_;
   double unsettled_ = 0;
 };
