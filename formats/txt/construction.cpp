@@ -98,6 +98,15 @@ void read_extent(Parser& p, std::string_view noun, int& count, double& pitch) {
 
 void read_system(Parser& p, WeaveSystem& system, std::string_view noun) {
   system.place = p.statement().place();
+  // `warp 8 cotton 24/cm`.
+  const std::vector<std::string_view> words = words_of(p.peek_rest());
+  if (words.size() > 2 && words[0].find_first_not_of("0123456789") == std::string_view::npos &&
+      is_identifier(words[1])) {
+    const std::string_view text = p.peek_rest();
+    const auto behind = static_cast<std::size_t>(words[1].data() + words[1].size() - text.data());
+    return p.error(p.here(), fmt::format("the thread stands in front of the number of {}: write '{} {}{}'",
+                                         noun, words[1], words[0], readable(text.substr(behind))));
+  }
   read_threads(p, system.threads);
   if (p.has_failed() || lacks_count(p, noun)) return;
   const auto number = p.count(fmt::format("the number of {}", noun));
@@ -182,6 +191,11 @@ void read_draft_rows(Parser& p, Draft& draft) {
 void read_draft_numbers(Parser& p, Draft& draft) {
   const std::string what = fmt::format("the {}", word_of(draft_words, draft.form));
   const bool is_twill = draft.form == Draft::Form::twill, is_satin = draft.form == Draft::Form::satin;
+  if (!p.more())
+    return p.error(p.here(), fmt::format("{} says how the yarns go over and under, as in {}", what,
+                                         is_twill   ? "2/1"
+                                         : is_satin ? "5 or 8/3 (shafts, and the step)"
+                                                    : "2x2"));
   const auto numbers = p.counts(what, '/');
   if (!numbers) return;
   const Spot spot = p.last();
@@ -218,6 +232,12 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
     if (!understood->empty())
       p.report.note(p.last(), fmt::format("draft {}: understood as {}", in_quotes(text), *understood));
     return;
+  }
+  if (const std::string_view word = p.peek_word(), near = near_draft_of_trade(word); !near.empty()) {
+    p.error(p.here(), same_word(near, word)
+                          ? fmt::format("{} is a draft by itself: write '{}'", in_quotes(text), near)
+                          : fmt::format("unknown draft {}; did you mean '{}'?", in_quotes(word), near));
+    return p.skip_statement();
   }
   const auto form = p.choice("draft", draft_words);
   if (!form) return p.skip_statement();

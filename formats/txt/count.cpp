@@ -39,6 +39,27 @@ std::optional<System> system_named(std::string_view word) {
   return std::nullopt;
 }
 
+// Counts of hanks in an English pound of yarn that are none of `density_words`; read as Nm.
+struct Hanks {
+  std::string_view word;
+  double yards;
+};
+constexpr std::array<Hanks, 5> hank_words{
+    {{"NeL", 300}, {"lea", 300}, {"NeK", 560}, {"NeW", 560}, {"worsted", 560}}};
+
+const Hanks* hanks_named(std::string_view word) {
+  for (const Hanks& known : hank_words)
+    if (same_word(known.word, word)) return &known;
+  return nullptr;
+}
+
+// What may stand in front of a count: the sign Tt of linear density, and its names.
+bool is_title_of_count(std::string_view word) {
+  for (const std::string_view title : {"Tt", "count", "titre", "titer"})
+    if (same_word(word, title)) return true;
+  return false;
+}
+
 bool is_indirect(System system) {
   return system == System::nm || system == System::ne;
 }
@@ -57,6 +78,7 @@ struct Token {
   std::string_view text;
   double value = 0;            // of a number
   bool is_expression = false;  // a param, or an expression in brackets
+  bool is_thousands = false;   // 12k: of filaments
 };
 
 class Tokens {
@@ -102,7 +124,12 @@ class Tokens {
     double value = 0;
     const auto [stop, failure] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
     if (failure != std::errc{}) return wrong_count(text_, "a number is expected");
-    return Token{Token::Kind::number, taken(static_cast<std::size_t>(stop - rest_.data())), value};
+    Token token{Token::Kind::number, taken(static_cast<std::size_t>(stop - rest_.data())), value};
+    if (rest_.empty() || lower(rest_.front()) != 'k' || (rest_.size() > 1 && is_letter(rest_[1]))) return token;
+    rest_.remove_prefix(1);
+    token.value *= 1000.0;
+    token.is_thousands = true;
+    return token;
   }
 
   Result<Token> word() {
@@ -157,6 +184,7 @@ class Reading {
 
   Status take_number(const Token& token) {
     if (!(token.value > 0.0)) return wrong_count(text_, "its numbers are larger than 0");
+    if (token.is_thousands) return take_thousands(token);
     const Role role = std::exchange(role_, Role::none);
     if (!base_ || role == Role::resultant) {
       if (role == Role::resultant && base_) return put(resultant_, token.value);
@@ -179,11 +207,23 @@ class Reading {
     return put(filaments_, token.value);
   }
 
+  // Of filaments: 12k.
+  Status take_thousands(const Token& token) {
+    if (!base_)
+      return wrong_count(text_, fmt::format("{0}k is a number of filaments, and no count: write the count in "
+                                            "front of it, as in tex 800 {0}k",
+                                            token.text));
+    if (role_ == Role::plies || role_ == Role::resultant)
+      return wrong_count(text_, fmt::format("{}k is a number of filaments", token.text));
+    role_ = Role::none;
+    return put(filaments_, token.value);
+  }
+
   Status take_sign(std::string_view sign) {
     if (sign == "/" && base_ && (role_ == Role::none)) return role_ = Role::slash, Status{};
     if (sign == "-" || sign == ";") return {};  // 2-ply; 20 tex x 2; R 42 tex
     if (sign == "*" || sign == "+" || sign == "^") return needs_brackets();
-    return wrong_count(text_, fmt::format("{} is not part of one; write {}", in_quotes(sign), examples()));
+    return not_part(sign);
   }
 
   Status take_word(std::string_view word) {
@@ -202,6 +242,8 @@ class Reading {
       if (!same_word(word, "x") && role_ == Role::none && !slashed_.empty()) return {};  // 30/2 ply
     }
     if (same_word(word, "R") && role_ == Role::none) return role_ = Role::resultant, Status{};
+    if (const Hanks* hanks = hanks_named(word); hanks != nullptr && system_ == System::nm)
+      return hanks_ = hanks, Status{};
     if (const auto system = system_named(word)) {
       if (*system == system_) return {};
       return wrong_count(text_, fmt::format("{} is another system than {}", in_quotes(word),
@@ -209,12 +251,17 @@ class Reading {
     }
     if (same_word(word, "Z") || same_word(word, "S"))
       return wrong_count(text_, "twist has a statement of its own: twist 660 Z");
-    if (!base_ && role_ == Role::none && is_word_of_none(word)) return {};
-    return wrong_count(text_, fmt::format("{} is not part of one; write {}", in_quotes(word), examples()));
+    if (!base_ && role_ == Role::none && is_title_of_count(word)) return {};
+    return not_part(word);
   }
 
-  // Signs of quantity in front: Tt of a linear density.
-  static bool is_word_of_none(std::string_view word) { return same_word(word, "Tt"); }
+  [[nodiscard]] Message not_part(std::string_view token) const {
+    const bool is_comment = text_.find(';') != std::string_view::npos ||
+                            text_.find("--") != std::string_view::npos ||
+                            text_.find("/*") != std::string_view::npos;
+    return wrong_count(text_, fmt::format("{} is not part of one; write {}{}", in_quotes(token), examples(),
+                                          is_comment ? " (a comment begins with #)" : ""));
+  }
 
   [[nodiscard]] std::string_view examples() const {
     return is_indirect(system_) ? "30/2 or 2/30 (plies)" : "167 f48 (filaments), 1400 x2 (plies)";
@@ -240,7 +287,7 @@ class Reading {
     count.filaments = static_cast<int>(filaments_.value_or(0.0));
     if (count.plies > 1)
       count.understood = fmt::format("{} plies of {}", count.plies, with_system(single));
-    else if (filaments_ || range_)
+    else if (filaments_ || range_ || hanks_ != nullptr)
       count.understood = with_system(whole);
     if (range_) count.understood += fmt::format(", the middle of a raw silk's range {}", *range_);
     if (filaments_)
@@ -248,6 +295,9 @@ class Reading {
           fmt::format(", {} {}{}", count.filaments, count.filaments == 1 ? "filament" : "filaments",
                       count.plies > 1 ? " each" : "");
     if (count.plies > 1) count.understood += fmt::format("; {} in all", with_system(whole));
+    if (hanks_ != nullptr)
+      count.understood += fmt::format(" ({} is the number of hanks of {} yards in a pound)", hanks_->word,
+                                      hanks_->yards);
     return count;
   }
 
@@ -266,6 +316,8 @@ class Reading {
     const auto largest = std::max_element(slashed_.begin(), slashed_.end());
     if (largest != slashed_.end() && *largest > *base_) std::swap(*largest, *base_);
     double plies = product_of_plies();
+    constexpr double metres_a_yard = 0.9144, grams_a_pound = 453.59237;
+    if (hanks_ != nullptr) *base_ *= hanks_->yards * metres_a_yard / grams_a_pound;
     for (const double more : slashed_) {
       if (more != std::floor(more)) return needs_brackets();
       plies *= more;
@@ -282,7 +334,20 @@ class Reading {
     return more == 2.0 || (*base_ >= wide && more == 4.0);
   }
 
+  // 2/150/48, 2/78: plies stand in front where what follows cannot be their filaments.
+  void put_plies_behind() {
+    constexpr double finest = 0.1;  // dtex of a filament
+    if (slashed_.empty() || *base_ > max_plies_of_count || *base_ != std::floor(*base_) ||
+        slashed_.front() <= max_plies_of_count)
+      return;
+    const bool has_filaments =
+        filaments_ || (slashed_.size() > 1 && slashed_[1] > max_plies_of_count);
+    const double of_filament = 10.0 * LinearDensity{*base_ / slashed_.front(), system_}.tex();
+    if (has_filaments || of_filament < finest) std::swap(*base_, slashed_.front());
+  }
+
   Result<YarnCount> direct() {
+    put_plies_behind();
     if (is_silk_range()) {
       range_ = fmt::format("{0} to {1} ({0} f{1} would be filaments)", *base_, slashed_.front());
       base_ = 0.5 * (*base_ + slashed_.front());
@@ -309,6 +374,7 @@ class Reading {
   Role role_ = Role::none;
   std::optional<double> base_, filaments_, resultant_;
   std::optional<std::string> range_;
+  const Hanks* hanks_ = nullptr;
   std::vector<double> slashed_, plies_;
   bool is_resultant_ = false, base_is_expression_ = false;
 };
@@ -330,19 +396,23 @@ bool is_count_notation(std::string_view text, const Scope& scope) {
 }
 
 std::string_view system_of_count(std::string_view line) {
+  if (const std::size_t blank = line.find_first_of(" \t"); is_title_of_count(line.substr(0, blank)))
+    return blank < line.size() ? system_of_count(trimmed(line.substr(blank))) : std::string_view{};
   const bool is_resultant =
       line.size() > 1 && lower(line.front()) == 'r' && (line[1] == ' ' || is_digit(line[1]));
   const bool begins_with_number = !line.empty() && is_digit(line.front());
-  bool has_number = false;
   for (std::size_t i = 0; i < line.size();) {
     if (!is_letter(line[i])) {
-      has_number = has_number || is_digit(line[i]);
       ++i;
       continue;
     }
     std::size_t stop = i;
     while (stop < line.size() && is_letter(line[stop])) ++stop;
-    const auto system = system_named(line.substr(i, stop - i));
+    const std::string_view word = line.substr(i, stop - i);
+    // A number of filaments alone, 12k, is no count: its reader says so.
+    const auto system = hanks_named(word) != nullptr                       ? System::nm
+                        : same_word(word, "k") && stop == line.size() ? System::tex
+                                                                          : system_named(word);
     const bool is_glued =
         i == 0 && stop < line.size() && (is_digit(line[stop]) || (line[stop] == ' ' && stop > 1));
     if (system && (begins_with_number || is_resultant || is_glued)) return word_of(density_words, *system);

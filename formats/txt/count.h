@@ -19,8 +19,9 @@ struct YarnCount {
 
 // Direct systems (tex, dtex, denier): the first number is the linear density; behind `/` a number above
 // `max_plies_of_count` is that of filaments, any other one that of plies; `f48` and `48f` are filaments, `x2`
-// plies; `R` marks the resultant count of the whole yarn. `denier 20/22` is a raw silk's range. Indirect
-// systems (Nm, Ne): of two numbers the smaller one is that of plies, on either side of `/`. Numbers are
+// plies (`2/150/48`, `2/78`: in front), `12k` thousands of filaments; `R` marks the resultant count of the
+// whole yarn. `denier 20/22` is a raw silk's range. Indirect systems (Nm, Ne; NeL of linen and NeK of worsted
+// yarns are read as Nm): of two numbers the smaller one is that of plies, on either side of `/`. Numbers are
 // decimals, params, or expressions in brackets. `text`: the line without its word, and perhaps with the
 // system's word within. Errors (malformed): what is wrong, and how to write it.
 Result<YarnCount> read_yarn_count(std::string_view text, fabric::LinearDensity::Measure system, Scope& scope);

@@ -52,6 +52,13 @@ bool begins_comment(const char* p, const char* end) {
   return end - p > 1 && p[0] == '/' && p[1] == '/';
 }
 
+// Of what begins a comment elsewhere.
+std::string_view comment_hint(std::string_view word) {
+  for (const std::string_view sign : {";", "--", "/*", "%", "!", "'"})
+    if (word.starts_with(sign)) return ": a comment begins with #";
+  return {};
+}
+
 bool is_not_finite_word(std::string_view word) {
   if (!word.empty() && (word.front() == '+' || word.front() == '-')) word.remove_prefix(1);
   return same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity");
@@ -294,9 +301,11 @@ std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_
   }
   at_ += word.size();
   if (refuse_foreign(word)) return std::nullopt;
+  const bool is_name_with_sign = text.size() + 1 == word.size() && !text.empty();
   return fail(last(), fmt::format("{}: {} is not a name (letters, digits, '_', '.', '-', a letter first; "
-                                  "anything else stands in double quotes)",
-                                  what, in_quotes(word)));
+                                  "anything else stands in double quotes){}",
+                                  what, in_quotes(word),
+                                  is_name_with_sign ? fmt::format(": write '{}'", text) : std::string()));
 }
 
 std::size_t Cursor::leading_count() {
@@ -457,7 +466,8 @@ bool Cursor::finish() {
   token_ = at_;
   const std::string_view word = word_at(at_);
   if (!refuse_foreign(word))
-    report_.error(last(), fmt::format("nothing more is expected on this line, found {}", in_quotes(word)));
+    report_.error(last(), fmt::format("nothing more is expected on this line, found {}{}", in_quotes(word),
+                                      comment_hint(word)));
   return false;
 }
 

@@ -20,6 +20,25 @@ int find_word(const std::vector<std::string_view>& words, std::string_view word)
   return found == words.end() ? -1 : static_cast<int>(found - words.begin());
 }
 
+// Words of the trades for what a statement is called here.
+constexpr std::array<Word<std::string_view>, 10> trade_words{{{"ends", "warp"},
+                                                              {"picks", "weft"},
+                                                              {"filling", "fill"},
+                                                              {"woof", "weft"},
+                                                              {"woven", "weave"},
+                                                              {"weaving", "weave"},
+                                                              {"knitted", "knit"},
+                                                              {"braided", "braid"},
+                                                              {"fibre", "material"},
+                                                              {"fiber", "material"}}};
+
+// The one of the known words that is meant; empty: none is near.
+std::string_view meant_word(std::string_view word, const std::vector<std::string_view>& known) {
+  for (const auto& trade : trade_words)
+    if (same_word(trade.text, word) && find_word(known, trade.value) >= 0) return trade.value;
+  return near_word(word, known);
+}
+
 }  // namespace
 
 std::string Block::title() const {
@@ -82,7 +101,8 @@ int Parser::close(const Block& block) {
     std::string words = fmt::format("'{}'", table.words[i]);
     for (std::size_t j = i + 1; j < table.words.size(); ++j)
       if (table.slots[j] == i) words += fmt::format(" or '{}'", table.words[j]);
-    error(spot, fmt::format("{} ends without its {}", block.title(), words));
+    error(spot, fmt::format("{} ends without its {}{}", block.title(), words,
+                            block.kind == "yarn" ? "; what cloths are made of is a 'thread'" : ""));
   }
   return end_step;
 }
@@ -119,7 +139,15 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
   }
   std::vector<std::string_view> known = block.table->words;
   if (block.outer != nullptr) known.emplace_back("end");
-  const std::string_view near = near_word(word, known);
+  if (const std::size_t sign = word.find_first_of("=:");
+      sign < word.size() - 1 && find_word(known, word.substr(0, sign)) >= 0) {
+    const std::string_view rest = peek_rest();
+    error(statement(), fmt::format("between a word and its value stands a blank: write '{} {}'",
+                                   word.substr(0, sign), readable(trimmed(rest.substr(sign + 1)))));
+    skip_statement();
+    return skip_step;
+  }
+  const std::string_view near = meant_word(word, known);
   if (block.table->word_of_line != nullptr && word.front() >= '0' && word.front() <= '9') {
     error(statement(),
           fmt::format("a yarn count begins with its system, tex, dtex, denier, Nm or Ne: write 'dtex {}'",
@@ -130,7 +158,8 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
   std::string what = fmt::format("unknown word {}", in_quotes(word));
   if (block.outer != nullptr) what += fmt::format(" in {}", block.title());
   if (block.table->has_rows) what += " where a row of numbers or 'end' is expected";
-  what += near.empty() ? fmt::format("; known: {}", fmt::join(known, ", ")) : did_you_mean(word, known);
+  what += near.empty() ? fmt::format("; known: {}", fmt::join(known, ", "))
+                       : fmt::format("; did you mean '{}'?", near);
   error(statement(), what);
   if (same_word(near, "end")) return end_step;
   if (!near.empty()) return find_word(known, near);

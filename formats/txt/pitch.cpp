@@ -13,6 +13,7 @@ namespace selvage::formats::txt {
 namespace {
 
 constexpr std::array<std::string_view, 6> lengths = {"mm", "cm", "dm", "m", "in", "inch"};
+constexpr std::string_view inch_sign = "\"";
 constexpr std::array<std::string_view, 14> nouns = {"ends",   "end",      "picks", "pick",   "threads",
                                                     "thread", "yarns",    "wales", "wale",   "courses",
                                                     "course", "stitches", "st",    "needles"};
@@ -67,7 +68,8 @@ std::optional<std::string> pitch_in_own_form(std::string_view text) {
   const bool has_noun = is_one_of(word, nouns);
   if (has_noun) word = taken_word(rest);
   if (word.empty() && trimmed(rest).starts_with("/")) {
-    if (is_glued && !has_noun && trimmed(rest).find(' ') == std::string_view::npos) return std::nullopt;
+    if (is_glued && !has_noun && trimmed(rest).find_first_of(" \"") == std::string_view::npos)
+      return std::nullopt;
     rest = trimmed(rest).substr(1);
   } else if (!same_word(word, "per")) {
     return std::nullopt;
@@ -77,6 +79,7 @@ std::optional<std::string> pitch_in_own_form(std::string_view text) {
   std::string made =
       value + "/" + std::string(times > 0 && !starts_name(rest.front()) ? rest.substr(0, times) : "");
   if (times > 0 && !starts_name(rest.front())) rest.remove_prefix(times);
+  if (trimmed(rest) == inch_sign) return made + "in";
   word = taken_word(rest);
   if (!trimmed(rest).empty() || !is_one_of(word, lengths)) return std::nullopt;
   return made + std::string(word);

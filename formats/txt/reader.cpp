@@ -188,7 +188,7 @@ bool read_version(Parser& p) {
     if (meant.empty()) return false;
     p.take_word();
   }
-  const auto version = p.count("the version of the language");
+  const auto version = p.count("the version of the language (write 'fabric 1')");
   if (!p.finish() || *version <= newest_version) return true;
   p.report.error(p.last(),
                  fmt::format("version {} of the language is newer than this program, which knows version {}",

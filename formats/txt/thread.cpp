@@ -3,7 +3,10 @@
 
 #include <cmath>
 
+#include "core/number_text.h"
 #include "core/plane.h"
+#include "core/words.h"
+#include "fabric/fibres.h"
 #include "formats/txt/blocks.h"
 #include "formats/txt/colors.h"
 #include "formats/txt/count.h"
@@ -51,9 +54,19 @@ void read_linear_density(Parser& p, Thread& thread, std::string_view word) {
 
 template <class Owner>
 void read_packing(Parser& p, Owner& owner, std::string_view) {
-  const auto value = p.positive("the packing");
+  std::optional<double> value;
+  if (const std::string_view word = p.peek_word(); word.ends_with('%')) {
+    value = read_number(word.substr(0, word.size() - 1));
+    if (!value || !(*value > 0.0 && *value <= 100.0))
+      return p.error(p.here(), "the packing is a share of the section, as in 0.65 or 65%");
+    p.take_word();
+    *value /= 100.0;
+  } else {
+    value = p.positive("the packing");
+  }
   if (value && *value > 1.0)
-    p.error(p.last(), "the packing is a share of the section: it cannot be larger than 1");
+    p.error(p.last(), fmt::format("the packing is a share of the section: it cannot be larger than 1{}",
+                                  *value <= 100.0 ? fmt::format("; write '{}'", *value / 100.0) : ""));
   else if (value)
     p.check(fabric::packing_quantity, *value);
   if (p.finish()) owner.packing = *value;
@@ -115,8 +128,22 @@ void read_section(Parser& p, Thread& thread, std::string_view) {
 // TURNS and their direction, in either order; turns may say `t/m` behind them.
 std::pair<std::optional<double>, std::optional<fabric::Hand>> read_turns(Parser& p, std::string_view what) {
   std::optional<fabric::Hand> hand;
-  const auto is_hand = [&] { return same_word(p.peek_word(), "Z") || same_word(p.peek_word(), "S"); };
-  if (is_hand()) hand = p.choice("twist direction", hand_words);
+  const auto is_hand = [](std::string_view word) { return same_word(word, "Z") || same_word(word, "S"); };
+  const auto is_number = [](std::string_view word) { return read_number(word).has_value(); };
+  if (is_hand(p.peek_word())) {
+    hand = p.choice("twist direction", hand_words);
+  } else if (const std::string_view word = p.peek_word(); word.size() > 1) {  // Z600, 600Z
+    const std::string_view first = word.substr(0, 1), last = word.substr(word.size() - 1);
+    if (is_hand(first) && is_number(word.substr(1))) {
+      hand = same_word(first, "Z") ? fabric::Hand::z : fabric::Hand::s;
+      p.take_bytes(1);
+    } else if (is_hand(last) && is_number(word.substr(0, word.size() - 1))) {
+      const double turns = *read_number(word.substr(0, word.size() - 1));
+      p.take_word();
+      p.check(fabric::twist_quantity, turns);
+      return {turns, same_word(last, "Z") ? fabric::Hand::z : fabric::Hand::s};
+    }
+  }
   const auto turns = p.not_negative(fmt::format("the {} (its direction is the letter Z or S)", what),
                                     fabric::twist_quantity);
   for (const std::string_view unit : {"t/m", "turns/m", "tr/m", "/m"})
@@ -137,8 +164,30 @@ void read_plies(Parser& p, Thread& thread, std::string_view) {
   if (p.finish()) thread.plies = {*count, *turns, *hand};
 }
 
+// E glass, PA 6.6: names of fibres may have blanks.
+void read_thread_material(Parser& p, Thread& thread, std::string_view) {
+  const std::string rest = with_plain_blanks(p.peek_rest());
+  if (rest.find(' ') != std::string::npos && rest.find_first_of("\"#") == std::string::npos)
+    if (const Material* fibre = fabric::find_fibre(rest)) {
+      p.take_rest();
+      if (p.finish()) thread.material = fibre->name;
+      return;
+    }
+  const auto name = p.reference(p.materials);
+  if (p.finish()) thread.material = *name;
+}
+
 void read_color(Parser& p, Thread& thread, std::string_view) {
   fabric::Color color;
+  // dark blue, Dark-Blue.
+  std::string name(p.peek_rest());
+  std::erase_if(name, [](char c) { return c == ' ' || c == '\t' || c == '-' || c == '_'; });
+  if (!name.empty() && is_letter(name.front()))
+    if (const std::optional<fabric::Color> named = color_named(name)) {
+      p.take_rest();
+      if (p.finish()) thread.color = named;
+      return;
+    }
   const std::string_view word = p.peek_word(), code = p.take_color_code();
   if (!code.empty() || (!word.empty() && is_letter(word.front()))) {
     const std::string_view given = code.empty() ? p.take_word() : code;
@@ -147,7 +196,8 @@ void read_color(Parser& p, Thread& thread, std::string_view) {
       return p.error(
           p.last(),
           code.empty()
-              ? fmt::format("unknown colour {}{} (or #RRGGBB, #RGB, or three numbers from 0 to 255)",
+              ? fmt::format("unknown colour {}{} (or #RRGGBB, #RGB, or three numbers from 0 to 255, as in "
+                            "70 130 180)",
                             in_quotes(given), did_you_mean(given, color_names()))
               : fmt::format("{} is no colour: behind # there are 6 or 3 digits from 0 to 9 and a to f, as in "
                             "#4682b4",
@@ -330,7 +380,7 @@ const std::vector<Statement<Thread>>& thread_statements() {
       {"filaments", into(&Thread::filaments, a_count("the number of filaments"))},
       {"color", read_color},
       {"colour", read_color, Times::at_most_once, "color"},
-      {"material", into(&Thread::material, a_reference(&Parser::materials))}};
+      {"material", read_thread_material}};
   return list;
 }
 

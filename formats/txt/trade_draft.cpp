@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <span>
 
 #include "core/words.h"
 #include "formats/txt/words.h"
@@ -17,9 +19,11 @@ using Form = Draft::Form;
 constexpr int max_of_group = 50;  // yarns that go as one
 
 // Denton and Daniels, Textile Terms and Definitions, under each name.
-constexpr std::array<std::string_view, 11> plain_names = {"taffeta",    "poplin", "tabby", "calico",
-                                                          "broadcloth", "muslin", "voile", "canvas",
-                                                          "percale",    "1/1",    "1x1"};
+constexpr std::array<std::string_view, 19> plain_names = {
+    "taffeta", "poplin",  "tabby",   "calico",   "broadcloth", "muslin", "voile",    "canvas", "percale", "lawn",
+    "batiste", "cambric", "organza", "chambray", "sheeting",   "cheesecloth", "gingham", "1/1",    "1x1"};
+// Equal groups both ways, where no numbers follow 2 x 2.
+constexpr std::array<std::string_view, 4> group_names = {"hopsack", "panama", "matt", "celtic"};
 struct TwillName {
   std::string_view name;
   int over = 0, under = 0;
@@ -73,6 +77,34 @@ std::string groups_text(const std::array<int, 2>& pair) {
   return fmt::format("{} ends x {} picks as one", pair[0], pair[1]);
 }
 
+bool is_any_of(std::string_view word, std::span<const std::string_view> names) {
+  return std::any_of(names.begin(), names.end(), [&](auto name) { return same_word(word, name); });
+}
+
+// `drill 2/1`, `3/1 denim`, `oxford 2x1`, `matt 3/3`, `sateen 5`: a name, and the numbers that it may have.
+std::optional<std::string> named_with_numbers(std::string_view first, std::string_view last, Draft& draft) {
+  const bool is_name_first = is_letter(first.front());
+  const std::string_view name = is_name_first ? first : last, numbers = is_name_first ? last : first;
+  for (const TwillName& twill : twill_names)
+    if (same_word(name, twill.name))
+      if (const auto pair = pair_of(numbers, '/'))
+        return make_twill(draft, (*pair)[0], (*pair)[1], twill.hand);
+  auto pair = pair_of(numbers, 'x');
+  if (!pair) pair = pair_of(numbers, '/');
+  if (pair && std::max((*pair)[0], (*pair)[1]) <= max_of_group &&
+      (same_word(name, "oxford") || (is_any_of(name, group_names) && (*pair)[0] == (*pair)[1])))
+    return make_groups(draft, (*pair)[0], (*pair)[1]), groups_text(*pair);
+  int shafts = 0;
+  const char* const end = numbers.data() + numbers.size();
+  const auto [stop, failure] = std::from_chars(numbers.data(), end, shafts);
+  if (!same_word(name, "sateen") || failure != std::errc{} || stop != end || shafts < 4 || shafts > 100)
+    return std::nullopt;
+  draft.form = Form::satin;
+  draft.a = shafts;
+  draft.b = 0;
+  return fmt::format("satin {} weft-faced", shafts);
+}
+
 }  // namespace
 
 std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
@@ -80,13 +112,15 @@ std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
   if (words.empty() || words.size() > 2) return std::nullopt;
   const std::string_view first = words.front(), last = words.back();
   const auto is = [](std::string_view word, std::string_view name) { return same_word(word, name); };
+  if (words.size() == 2)
+    if (const auto understood = named_with_numbers(first, last, draft)) return understood;
   if (words.size() == 1) {
     for (const std::string_view name : plain_names)
       if (is(first, name)) return draft.form = Form::plain, std::string();
     for (const TwillName& twill : twill_names)
       if (is(first, twill.name)) return make_twill(draft, twill.over, twill.under, twill.hand);
     if (is(first, "oxford")) return make_groups(draft, 2, 1), groups_text({2, 1});
-    if (is(first, "hopsack") || is(first, "panama")) return make_groups(draft, 2, 2), groups_text({2, 2});
+    if (is_any_of(first, group_names)) return make_groups(draft, 2, 2), groups_text({2, 2});
     if (const auto pair = pair_of(first, '/')) return make_twill(draft, (*pair)[0], (*pair)[1], Hand::z);
   }
   // `twill 2x2`, `2x2 twill`.
@@ -118,6 +152,21 @@ std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
     return fmt::format("satin {} (weft-faced, as `satin` is without a word)", *shafts);
   }
   return std::nullopt;
+}
+
+std::string_view near_draft_of_trade(std::string_view word) {
+  std::vector<std::string_view> names;
+  for (const auto& draft : draft_words) names.push_back(draft.text);
+  const std::size_t own = names.size();
+  names.insert(names.end(), {"oxford", "crowfoot", "sateen"});
+  names.insert(names.end(), group_names.begin(), group_names.end());
+  names.insert(names.end(), plain_names.begin(), plain_names.end());
+  for (const TwillName& twill : twill_names) names.push_back(twill.name);
+  const std::string_view near = near_word(word, names);
+  return std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(own), near) ==
+                 names.begin() + static_cast<std::ptrdiff_t>(own)
+             ? near
+             : std::string_view{};
 }
 
 }  // namespace selvage::formats::txt

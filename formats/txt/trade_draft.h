@@ -14,4 +14,7 @@ namespace selvage::formats::txt {
 // follows `draft`.
 std::optional<std::string> draft_of_trade(std::string_view text, fabric::Draft& draft);
 
+// The trade's name, or the one that is meant by a word that is none of `draft`'s own; empty: there is none.
+std::string_view near_draft_of_trade(std::string_view word);
+
 }  // namespace selvage::formats::txt

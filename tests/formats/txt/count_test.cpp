@@ -62,6 +62,34 @@ TEST(YarnCount, DirectSystemsHaveFilamentsAndPlies) {
   EXPECT_NEAR(tex_of("denier 68/24f"), 68.0 / 9, 1e-12);
 }
 
+// As textured yarns are traded: plies, count, filaments.
+TEST(YarnCount, PliesInFrontOfDirectSystems) {
+  EXPECT_NEAR(tex_of("denier 2/150/48"), 300.0 / 9, 1e-12);
+  EXPECT_NE(messages_of("denier 2/150/48").find("2 plies of 150 denier, 48 filaments each"), std::string::npos);
+  EXPECT_NEAR(tex_of("denier 1/70/34"), 70.0 / 9, 1e-12);
+  EXPECT_NEAR(tex_of("dtex 2/78"), 15.6, 1e-12);
+  EXPECT_NEAR(tex_of("dtex 2/167 f48"), 33.4, 1e-12);
+  EXPECT_NEAR(tex_of("dtex 8/12"), 0.8, 1e-12);  // 12 filaments of a stocking's yarn
+}
+
+TEST(YarnCount, ThousandsOfFilaments) {
+  for (const std::string text : {"tex 800 12k", "tex 800 12K", "800 tex 12K", "tex 800/12k", "tex 800 f12000"}) {
+    EXPECT_NEAR(tex_of(text), 800, 1e-9) << text;
+    EXPECT_NE(messages_of(text).find("12000 filaments"), std::string::npos) << messages_of(text);
+  }
+  EXPECT_NE(messages_of("12k").find("12k is a number of filaments, and no count"), std::string::npos)
+      << messages_of("12k");
+}
+
+// Hanks of 300 and of 560 yards in a pound: 1 yard is 0.9144 m, 1 lb is 453.59237 g.
+TEST(YarnCount, LinenAndWorsted) {
+  for (const std::string text : {"NeL 25", "lea 25", "nel 25/1"})
+    EXPECT_NEAR(tex_of(text), 453592.37 / (25 * 300 * 0.9144), 1e-6) << text;
+  for (const std::string text : {"NeK 2/30", "worsted 30/2", "NeW 30/2"})
+    EXPECT_NEAR(tex_of(text), 2 * 453592.37 / (30 * 560 * 0.9144), 1e-6) << text;
+  EXPECT_NE(messages_of("NeL 25").find("300 yards in a pound"), std::string::npos);
+}
+
 // The border of the rule: 9 are plies, 10 are filaments.
 TEST(YarnCount, AboveNineAreFilaments) {
   EXPECT_NEAR(tex_of("dtex 100/9"), 90, 1e-9);

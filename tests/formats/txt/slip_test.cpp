@@ -69,10 +69,14 @@ std::string remedied(const std::string& text, const Message& message) {
   const std::string& said = message.text;
   std::smatch found;
   if (std::regex_search(said, found, std::regex("did you mean '([^']*)'"))) return token(found[1]);
+  if (std::regex_search(said, found, std::regex("\\(write '([^']*)'\\)")))
+    return std::regex_replace(text, std::regex("fabric[^\n]*"), found[1].str(), std::regex_constants::format_first_only);
   if (std::regex_search(said, found, std::regex("write '([^']*)'"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("needs brackets: (\\(.*\\))"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("decimal mark is the point, write ([0-9.]+)")))
     return token(found[1]);
+  if (std::regex_search(said, found, std::regex("as in ([0-9]+ [0-9]+ [0-9]+)")))
+    return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("as in ([^ ,]+)"))) return rest_of_line(" " + found[1].str());
   if (std::regex_search(said, found, std::regex("is missing: ([^ ,]+),")))
     return rest_of_line(" " + found[1].str());
@@ -156,6 +160,22 @@ TEST(Slips, AreUnderstood) {
                                    {draft, "draft 1/1"},
                                    {draft, "draft twill 2x2"},
                                    {draft, "draft satin 6"},
+                                   {draft, "draft matt 2/2"},
+                                   {draft, "draft oxford 2x1"},
+                                   {draft, "draft 3/1 drill"},
+                                   {draft, "draft denim 2/1"},
+                                   {draft, "draft sateen 5"},
+                                   {draft, "draft chambray"},
+                                   {warp, "warp cotton 8 60/\""},
+                                   {count, "count 20 Ne"},
+                                   {count, "Ne 20\n  twist Z800"},
+                                   {count, "Ne 20\n  twist 800Z"},
+                                   {count, "Ne 20\n  packing 65%"},
+                                   {count, "Ne 20\n  color dark blue"},
+                                   {count, "Ne 20\n  color Dark-Blue"},
+                                   {"  material cotton", "  material E glass"},
+                                   {"  material cotton", "  material PA 6.6"},
+                                   {"  material cotton", "  material nylon 6"},
                                    {warp, "warp cotton 8 24 open"}};
   for (const Slip& slip : slips) {
     const std::optional<Message> error = first_error(with(cloth, slip));
@@ -202,6 +222,26 @@ TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
                                    {"material cotton", "material coton"},
                                    {"material cotton", "material polyster"},
                                    {draft, "draft plian"},
+                                   {draft, "draft oxfrod"},
+                                   {draft, "draft oxford weave"},
+                                   {draft, "draft satin"},
+                                   {draft, "draft basket"},
+                                   {warp, "warp 8 cotton 24/cm"},
+                                   {warp, "ends cotton 8 24/cm"},
+                                   {weft, "picks cotton 8 22/cm"},
+                                   {weft, "filling cotton 8 22/cm"},
+                                   {weft, "woof cotton 8 22/cm"},
+                                   {"weave\n", "woven\n"},
+                                   {count, "Ne=20"},
+                                   {count, "Ne: 20"},
+                                   {count, "Ne:20"},
+                                   {count, "Ne 20\n  packing 65"},
+                                   {count, "Ne 20\n  color rgb(70,130,180)"},
+                                   {"material cotton", "material: cotton"},
+                                   {"material cotton", "fibre cotton"},
+                                   {"fabric 1\n", "fabric\n"},
+                                   {"fabric 1\n", "fabric 1.0\n"},
+                                   {"thread cotton", "thread cotton:"},
                                    {draft, "draft twil 2/1"},
                                    {draft, "draft twill"},
                                    {draft, "draft twill 2:1"},
