@@ -242,8 +242,8 @@ class Lines {
   [[nodiscard]] Vec3 at_net(int first, std::size_t i, std::size_t j) const {
     const std::size_t k = (at(first) + j) * points_.size() + i;
     if constexpr (net == Net::weights) return {surface_.weights[k], 0, 0};
-    const Vec3 p = surface_.points[k] - origin_;
-    if constexpr (net == Net::weighted_points) return surface_.weights[k] * p;
+    Vec3 p = surface_.points[k] - origin_;
+    if constexpr (net == Net::weighted_points) p *= surface_.weights[k];
     return p;
   }
 
