@@ -242,8 +242,8 @@ class Lines {
   [[nodiscard]] Vec3 at_net(int first, std::size_t i, std::size_t j) const {
     const std::size_t k = (at(first) + j) * points_.size() + i;
     if constexpr (net == Net::weights) return {surface_.weights[k], 0, 0};
-    const Vec3 p = surface_.points[k] - origin_;
-    if constexpr (net == Net::weighted_points) return surface_.weights[k] * p;
+    Vec3 p = surface_.points[k] - origin_;
+    if constexpr (net == Net::weighted_points) p *= surface_.weights[k];
     return p;
   }
 
@@ -375,6 +375,7 @@ class MomentIntegrals {
  private:
   using Areas = std::vector<double>;  // of the spans round a strip
   static constexpr std::size_t last_rule = 6;
+  static constexpr int most_parts = 128;  // of a span: a weight may let the area grow without end
 
   static double total(const Areas& areas) { return std::accumulate(areas.begin(), areas.end(), 0.0); }
   // Span by span, so that errors of opposite sign do not hide each other.
@@ -437,7 +438,7 @@ class MomentIntegrals {
   // power 1 + 2 / n of it, relative. Of finer rules the error is put at what it was before.
   double refined(std::size_t strip, Areas areas, double enough) {
     const double most_nodes = order(std::max(round_.degree, along_.degree), 0);
-    for (std::size_t rule = 1; rule <= last_rule; ++rule) {
+    for (std::size_t rule = 1; rule <= last_rule && parts(rule) <= most_parts; ++rule) {
       Areas finer = areas_of(strip, rule);
       const double change = difference(areas, finer), area = total(finer);
       areas = std::move(finer);
