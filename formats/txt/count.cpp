@@ -125,7 +125,8 @@ class Tokens {
     const auto [stop, failure] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
     if (failure != std::errc{}) return wrong_count(text_, "a number is expected");
     Token token{Token::Kind::number, taken(static_cast<std::size_t>(stop - rest_.data())), value};
-    if (rest_.empty() || lower(rest_.front()) != 'k' || (rest_.size() > 1 && is_letter(rest_[1]))) return token;
+    if (rest_.empty() || lower(rest_.front()) != 'k' || (rest_.size() > 1 && is_letter(rest_[1])))
+      return token;
     rest_.remove_prefix(1);
     token.value *= 1000.0;
     token.is_thousands = true;
@@ -179,6 +180,7 @@ class Reading {
   enum class Role { none, slash, plies, filaments, resultant };
 
   [[nodiscard]] Message needs_brackets() const {
+    if (text_.find("/*") != std::string_view::npos) return not_part("/*");
     return wrong_count(text_, fmt::format("an expression in a count needs brackets: ({})", trimmed(text_)));
   }
 
@@ -229,8 +231,11 @@ class Reading {
   Status take_word(std::string_view word) {
     const bool follows_slash = role_ == Role::slash;
     if (same_word(word, "f") || same_word(word, "fil") || same_word(word, "filaments")) {
-      // 48f: the number is there already.
-      if (role_ == Role::none && !slashed_.empty() && !filaments_) {
+      // 48f: the number is there already, and none follows.
+      Tokens ahead = tokens_;
+      const Result<Token> next = ahead.next();
+      const bool is_behind = !next || next->kind != Token::Kind::number;
+      if (role_ == Role::none && !slashed_.empty() && !filaments_ && is_behind) {
         filaments_ = slashed_.back();
         slashed_.pop_back();
         return {};
@@ -296,8 +301,8 @@ class Reading {
                       count.plies > 1 ? " each" : "");
     if (count.plies > 1) count.understood += fmt::format("; {} in all", with_system(whole));
     if (hanks_ != nullptr)
-      count.understood += fmt::format(" ({} is the number of hanks of {} yards in a pound)", hanks_->word,
-                                      hanks_->yards);
+      count.understood +=
+          fmt::format(" ({} is the number of hanks of {} yards in a pound)", hanks_->word, hanks_->yards);
     return count;
   }
 
@@ -340,8 +345,7 @@ class Reading {
     if (slashed_.empty() || *base_ > max_plies_of_count || *base_ != std::floor(*base_) ||
         slashed_.front() <= max_plies_of_count)
       return;
-    const bool has_filaments =
-        filaments_ || (slashed_.size() > 1 && slashed_[1] > max_plies_of_count);
+    const bool has_filaments = filaments_ || (slashed_.size() > 1 && slashed_[1] > max_plies_of_count);
     const double of_filament = 10.0 * LinearDensity{*base_ / slashed_.front(), system_}.tex();
     if (has_filaments || of_filament < finest) std::swap(*base_, slashed_.front());
   }
@@ -410,9 +414,9 @@ std::string_view system_of_count(std::string_view line) {
     while (stop < line.size() && is_letter(line[stop])) ++stop;
     const std::string_view word = line.substr(i, stop - i);
     // A number of filaments alone, 12k, is no count: its reader says so.
-    const auto system = hanks_named(word) != nullptr                       ? System::nm
+    const auto system = hanks_named(word) != nullptr                  ? System::nm
                         : same_word(word, "k") && stop == line.size() ? System::tex
-                                                                          : system_named(word);
+                                                                      : system_named(word);
     const bool is_glued =
         i == 0 && stop < line.size() && (is_digit(line[stop]) || (line[stop] == ' ' && stop > 1));
     if (system && (begins_with_number || is_resultant || is_glued)) return word_of(density_words, *system);

@@ -20,8 +20,9 @@ constexpr int max_of_group = 50;  // yarns that go as one
 
 // Denton and Daniels, Textile Terms and Definitions, under each name.
 constexpr std::array<std::string_view, 19> plain_names = {
-    "taffeta", "poplin",  "tabby",   "calico",   "broadcloth", "muslin", "voile",    "canvas", "percale", "lawn",
-    "batiste", "cambric", "organza", "chambray", "sheeting",   "cheesecloth", "gingham", "1/1",    "1x1"};
+    "taffeta",  "poplin",      "tabby",   "calico",  "broadcloth", "muslin",  "voile",
+    "canvas",   "percale",     "lawn",    "batiste", "cambric",    "organza", "chambray",
+    "sheeting", "cheesecloth", "gingham", "1/1",     "1x1"};
 // Equal groups both ways, where no numbers follow 2 x 2.
 constexpr std::array<std::string_view, 4> group_names = {"hopsack", "panama", "matt", "celtic"};
 struct TwillName {
@@ -158,7 +159,8 @@ std::string_view near_draft_of_trade(std::string_view word) {
   std::vector<std::string_view> names;
   for (const auto& draft : draft_words) names.push_back(draft.text);
   const std::size_t own = names.size();
-  names.insert(names.end(), {"oxford", "crowfoot", "sateen"});
+  if (same_word(word, "sateen")) return "sateen 5";
+  names.insert(names.end(), {"oxford", "crowfoot"});
   names.insert(names.end(), group_names.begin(), group_names.end());
   names.insert(names.end(), plain_names.begin(), plain_names.end());
   for (const TwillName& twill : twill_names) names.push_back(twill.name);

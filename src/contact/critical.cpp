@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nurbs/basis.h"
+#include "nurbs/spline.h"
+
 namespace selvage::contact {
 
 namespace {
@@ -109,6 +112,87 @@ std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const F
   const Vec3 moved = q.jet.position + shift;
   return Critical{x.head<2>(), x.tail<2>(), p.jet.position,
                   moved,       p.normal,    (p.jet.position - moved).dot(p.normal)};
+}
+
+namespace {
+
+// Three equations of a crease and a smooth surface, in lengths of `scale`: the way from its foot is along the
+// normal, which the crease is perpendicular to.
+struct CreaseEquations {
+  const Face& a;
+  const Face& b;
+  double crease, scale;
+
+  [[nodiscard]] Vec3 residual(const Vec3& x) const {
+    const SurfacePoint p = point_at(a, {crease, x[0]}), q = point_at(b, x.tail<2>());
+    const Vec3 t1 = q.jet.du.normalized(), t2 = q.normal.cross(t1);
+    const Vec3 way = (p.jet.position - q.jet.position) / scale;
+    return {way.dot(t1), way.dot(t2), q.normal.dot(p.jet.dv.normalized())};
+  }
+  [[nodiscard]] Eigen::Matrix3d jacobian(const Vec3& x, const Vec3& unit) const {
+    constexpr double h = 1e-6;
+    Eigen::Matrix3d out;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 step = h * unit[k] * Vec3::Unit(k);
+      out.col(k) = (residual(x + step) - residual(x - step)) / (2.0 * h);
+    }
+    return out;
+  }
+};
+
+}  // namespace
+
+std::optional<Critical> find_crease(const Face& a, double crease, double v, const Face& b,
+                                    const Vec2& site_b) {
+  const SurfacePoint p0 = point_at(a, {crease, v}), q0 = point_at(b, site_b);
+  const double scale = 0.25 * q0.jet.du.norm() * (b.surface->last_u() - b.surface->first_u());
+  if (!(scale > 0.0)) return std::nullopt;
+  const Vec3 unit = scale * Vec3(1.0 / p0.jet.dv.norm(), 1.0 / q0.jet.du.norm(), 1.0 / q0.jet.dv.norm());
+  if (!unit.allFinite()) return std::nullopt;
+  const CreaseEquations equations{a, b, crease, scale};
+  Vec3 x(v, site_b.x(), site_b.y());
+  Vec3 r = equations.residual(x);
+  constexpr double accuracy = 1e-11;
+  for (int step = 0; step < 40 && r.norm() > accuracy; ++step) {
+    Vec3 move = equations.jacobian(x, unit).fullPivLu().solve(-r);
+    if (!move.allFinite()) return std::nullopt;
+    if (const double size = move.norm(); size > 0.3) move *= 0.3 / size;
+    bool better = false;
+    for (int halving = 0; halving < 8 && !better; ++halving, move *= 0.5) {
+      Vec3 next = x + move.cwiseProduct(unit);
+      next << inside(a, {crease, next[0]}).y(), inside(b, next.tail<2>());
+      const Vec3 residual = equations.residual(next);
+      better = residual.norm() < r.norm();
+      if (!better) continue;
+      x = next;
+      r = residual;
+    }
+    if (!better) break;
+  }
+  if (!(r.norm() <= 1e-7)) return std::nullopt;
+  const SurfacePoint p = point_at(a, {crease, x[0]}), q = point_at(b, x.tail<2>());
+  return Critical{{crease, x[0]}, x.tail<2>(), p.jet.position,
+                  q.jet.position, -q.normal,   (q.jet.position - p.jet.position).dot(q.normal)};
+}
+
+std::optional<double> crease_near(const Face& face, const Vec2& site) {
+  const nurbs::Surface& s = *face.surface;
+  const double range = s.last_u() - s.first_u();
+  std::optional<double> nearest;
+  double least = range / 16.0;
+  for (const double u : nurbs::breakpoints(s.knots_u, s.degree_u)) {
+    double distance = std::abs(u - site.x());
+    if (face.round_u) distance = std::min(distance, range - distance);
+    if (distance >= least || nurbs::multiplicity(s.knots_u, u) < s.degree_u) continue;
+    // Its normals to both sides.
+    constexpr double beside = 1e-4, smooth = 0.99;
+    const Vec3 before = point_at(face, {u - beside * range, site.y()}).normal,
+               after = point_at(face, {u + beside * range, site.y()}).normal;
+    if (before.dot(after) > smooth) continue;
+    nearest = u;
+    least = distance;
+  }
+  return nearest;
 }
 
 NearestPoints find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b,

@@ -31,6 +31,15 @@ struct Critical {
 std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b,
                                       const Vec3& shift = Vec3::Zero());
 
+// Where a crease of the first surface, u = `crease`, is deepest in the second one: by Newton's method from v
+// along it and from the second's site. site_a.x() is the crease, and `normal` is opposite to the second's
+// outward one, along p - q. Nothing: as above.
+std::optional<Critical> find_crease(const Face& a, double crease, double v, const Face& b,
+                                    const Vec2& site_b);
+
+// The crease along the face that is nearest to u, within a sixteenth of its range.
+std::optional<double> crease_near(const Face& face, const Vec2& site);
+
 // The two nearest points of two cells, by Newton's method within their parameters' bounds from given sites:
 // also on edges and corners. A local solution.
 struct NearestPoints {

@@ -223,16 +223,29 @@ class DeepMeasurer {
     if (spot.face_b->is_side) contact.site_b = spot.site_b;
   }
 
-  // The critical pair of the surfaces that belongs to a parting along n.
+  // The critical pair of the surfaces that belongs to a parting along n; a crease of one may be in the other.
   [[nodiscard]] std::optional<Spot> critical_at(const Parting& parting, const Vec3& n) const {
     const Face *fa = face_at(mesh_a_, parting.a), *fb = face_at(mesh_b_, parting.b);
     if (fa == nullptr || fb == nullptr) return std::nullopt;
-    const std::optional<Critical> found = find_critical(*fa, site_of(mesh_a_, parting.a, parting.p), *fb,
-                                                        site_of(mesh_b_, parting.b, parting.q));
-    if (!found || found->normal.dot(n) < 0.7 ||
-        std::abs(found->depth - parting.distance) > 0.12 * parting.distance)
-      return std::nullopt;
-    return Spot{*found, fa, fb};
+    const Vec2 site_a = site_of(mesh_a_, parting.a, parting.p),
+               site_b = site_of(mesh_b_, parting.b, parting.q);
+    const auto belongs = [&](const std::optional<Critical>& found) {
+      return found && found->normal.dot(n) >= 0.7 &&
+             std::abs(found->depth - parting.distance) <= 0.12 * parting.distance;
+    };
+    if (const auto found = find_critical(*fa, site_a, *fb, site_b); belongs(found))
+      return Spot{*found, fa, fb};
+    if (const auto crease = crease_near(*fa, site_a))
+      if (const auto found = find_crease(*fa, *crease, site_a.y(), *fb, site_b); belongs(found))
+        return Spot{*found, fa, fb, false};
+    if (const auto crease = crease_near(*fb, site_b))
+      if (auto found = find_crease(*fb, *crease, site_b.y(), *fa, site_a)) {
+        std::swap(found->site_a, found->site_b);
+        std::swap(found->p, found->q);
+        found->normal = -found->normal;
+        if (belongs(found)) return Spot{*found, fa, fb, false};
+      }
+    return std::nullopt;
   }
 
   // The parting as a critical pair of the surfaces, when it is one: then it is exact, and n the easiest

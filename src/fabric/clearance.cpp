@@ -86,7 +86,7 @@ class GapSearch {
       const double move = (p - station.position).dot(station.derivative) / station.derivative.squaredNorm();
       t_ = std::clamp(t_ + move, near_ - reach_, near_ + reach_);
       station = b_.at(t_);
-      if (std::abs(move) < 1e-6) break;
+      if (std::abs(move) < 1e-6 * reach_) break;
     }
     return station;
   }

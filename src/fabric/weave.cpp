@@ -165,7 +165,7 @@ bool WeaveConstruction::is_over_dense() const {
 Message WeaveConstruction::too_thick(LooseCloth loose) const {
   const double wanted = *std::exchange(loose.thickness, std::nullopt);
   const std::string_view unit = name_of(fabric_.units);
-  const std::optional<double> least = least_thickness(loose, wanted);
+  const std::optional<double> least = least_thickness(loose);
   return error(Kind::geometry,
                fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted, unit,
                            least ? fmt::format("they are pressed to {:.6g} {} at the least", *least, unit)

@@ -93,7 +93,9 @@ bool can_press(const LooseCloth& cloth) {
   return true;
 }
 
-std::optional<PressedCloth> press_cloth(const LooseCloth& cloth) {
+namespace {
+
+std::optional<PressedCloth> press_once(const LooseCloth& cloth) {
   constexpr int most_tries = 6;
   constexpr double near = 0.9, least = 0.5;  // of the clearance
   // Of half of both thicknesses: what lies further apart at its crossings is no cloth that anything holds
@@ -118,10 +120,52 @@ std::optional<PressedCloth> press_cloth(const LooseCloth& cloth) {
     if (result.heights.clearance > 0.5 * most_lift * (result.warp.thickest + result.weft.thickest)) break;
     if (gap >= least * cloth.clearance && (!best || gap > best->gap)) best = std::move(result);
     if (gap >= near * cloth.clearance) break;
-    // Through the cloth it is more than from surface to surface, by the slopes.
-    systems.clearance *= std::clamp(cloth.clearance / std::max(gap, 0.01 * cloth.clearance), 1.05, 2.5);
+    // Through the cloth it is more than from surface to surface, by the slopes. In coarse steps: what the
+    // unit of the text has left in the gap is less.
+    constexpr double steps = 64;
+    const double more = std::clamp(cloth.clearance / std::max(gap, 0.01 * cloth.clearance), 1.05, 2.5);
+    systems.clearance *= std::round(steps * more) / steps;
   }
   return best;
+}
+
+// Thicknesses that a cloth is pressed to, each a hundredth below the one before, from that which it has by
+// itself. A search that starts anew for each does not find all that there are; where one is found all that
+// are larger are allowed.
+constexpr double thickness_factor = 0.99, thinnest_share = 0.25;
+
+// From the largest of them on that is not above `most` down: calls use(thickness, cloth) until it says that
+// it is enough.
+template <class Use>
+void for_thicknesses(LooseCloth cloth, double free, double most, const Use& use) {
+  for (double thickness = free; thickness > thinnest_share * free; thickness *= thickness_factor) {
+    if (thickness > most) continue;
+    cloth.thickness = thickness;
+    if (std::optional<PressedCloth> pressed = press_once(cloth); pressed && use(thickness, *pressed)) return;
+  }
+}
+
+// As thick as it is by itself.
+std::optional<double> free_thickness(LooseCloth cloth) {
+  cloth.thickness.reset();
+  const std::optional<PressedCloth> pressed = press_once(cloth);
+  return pressed ? std::optional(pressed->thickness()) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PressedCloth> press_cloth(const LooseCloth& cloth) {
+  if (!cloth.thickness) return press_once(cloth);
+  const std::optional<double> free = free_thickness(cloth);
+  if (!free) return std::nullopt;
+  std::optional<PressedCloth> thinner;
+  for_thicknesses(cloth, *free, *cloth.thickness, [&](double, PressedCloth& pressed) {
+    thinner = std::move(pressed);
+    return true;
+  });
+  if (!thinner) return std::nullopt;
+  std::optional<PressedCloth> pressed = press_once(cloth);
+  return pressed ? std::move(pressed) : std::move(thinner);
 }
 
 std::string pressing_of(const WovenThread& loose, const WovenThread& pressed, Unit units) {
@@ -200,6 +244,14 @@ std::string thickness_in_wif(const WifSystem& wif, double millimetres) {
                 wif.has_thicknesses ? std::optional("THICKNESS") : std::nullopt);
 }
 
+// The pitch that shown_pitch() gives.
+double as_shown(const WeaveSystem& system, double pitch, Unit units) {
+  const double mm = millimetres_per(units);
+  if (system.wif) return rounded_up(pitch * mm / system.wif->millimetres) * system.wif->millimetres / mm;
+  if (!system.counted_on) return rounded_up(pitch);
+  return *system.counted_on / rounded_down(*system.counted_on / (pitch * mm)) / mm;
+}
+
 // As the text gives pitches: a distance, or so many on a length. Not closer than it is (file units).
 std::string shown_pitch(const WeaveSystem& system, double pitch, Unit units) {
   if (system.wif) return spacing_in_wif(*system.wif, pitch * millimetres_per(units));
@@ -242,43 +294,40 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
 
 }  // namespace
 
-std::optional<double> least_thickness(LooseCloth cloth, double too_thin) {
-  cloth.thickness.reset();
-  const std::optional<PressedCloth> free = press_cloth(cloth);
+std::optional<double> least_thickness(const LooseCloth& cloth) {
+  const std::optional<double> free = free_thickness(cloth);
   if (!free) return std::nullopt;
-  const auto has_room_at = [&](double thickness) {
-    cloth.thickness = thickness;
-    return press_cloth(cloth).has_value();
-  };
-  constexpr double near = 5e-4;
-  double thick = free->thickness(), thin = too_thin;
-  while (thick - thin > near * thick) {
-    const double middle = 0.5 * (thin + thick);
-    (has_room_at(middle) ? thick : thin) = middle;
-  }
-  // As it will be written.
-  double least = rounded_up(thick);
-  while (!has_room_at(least) && least < free->thickness()) least = rounded_up((1 + 2 * near) * least);
-  return least;
+  double least = *free;
+  for_thicknesses(cloth, *free, *free, [&](double thickness, PressedCloth&) {
+    least = thickness;
+    return false;
+  });
+  return rounded_up(least);
 }
 
 std::string remedies_for(const LooseCloth& cloth) {
   const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;
-  const auto up = [](double value, double by) { return rounded_up(value * by) / value; };
+  const auto shown_factor = [&](bool is_warp, double by) {
+    const WeaveSystem& system = is_warp ? *cloth.warp.text : *cloth.weft.text;
+    return as_shown(system, by * system.pitch, cloth.units) / system.pitch;
+  };
   const std::optional<double> wider = least_factor(1.0, [&](double by) {
-    return has_room(cloth, {up(warp_pitch, by), up(weft_pitch, by), 1.0});
+    return has_room(cloth, {shown_factor(true, by), shown_factor(false, by), 1.0});
   });
   if (!wider) return "no pitch up to four times as large gives it: its yarns are too thick";
+  double thinner = 1.0 / *wider;
+  while (!has_room(cloth, {1.0, 1.0, thinner}) && thinner > 0.2) thinner *= 0.99;
   const double percent = 100.0 * (*wider - 1.0);
   std::string text = fmt::format(
       "both ways it is {:.{}f} % too dense. Remedies: {} for the warp and {} for the weft; or {}", percent,
       percent < 10.0 ? 1 : 0, shown_pitch(*cloth.warp.text, *wider * warp_pitch, cloth.units),
-      shown_pitch(*cloth.weft.text, *wider * weft_pitch, cloth.units), thinner_threads(cloth, 1.0 / *wider));
+      shown_pitch(*cloth.weft.text, *wider * weft_pitch, cloth.units), thinner_threads(cloth, thinner));
   // One system alone, the denser one if that is enough.
   const auto alone = [&](bool is_warp) -> std::optional<std::string> {
     const double pitch = is_warp ? warp_pitch : weft_pitch;
     const auto factor = least_factor(*wider, [&](double by) {
-      return has_room(cloth, {is_warp ? up(pitch, by) : 1.0, is_warp ? 1.0 : up(pitch, by), 1.0});
+      return has_room(cloth,
+                      {is_warp ? shown_factor(true, by) : 1.0, is_warp ? 1.0 : shown_factor(false, by), 1.0});
     });
     if (!factor) return std::nullopt;
     return fmt::format(

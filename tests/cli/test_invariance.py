@@ -18,7 +18,7 @@ NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 # Statements with lengths that the test can put in another unit; a sample with others is not compared by units.
 SECTION = rf"^(\s*section +(?:circle|ellipse|racetrack|lenticular|rectangle))((?: +{NUMBER})+)"
 KEYWORD = rf"\b(diameter|thickness|tolerance|loop|pitch|length|radius|amplitude|place|step|margin)((?: +{NUMBER})+)(?![\w/.*])"
-ROW = rf"^(\s*(?:derivative +(?:start|end))?)((?: +{NUMBER}){{3}})\s*$"
+ROW = rf"^(\s*(?:derivative +(?:start|end))?)((?: +{NUMBER}){{2,3}})\s*$"
 NO_LENGTHS = set(
     """fabric title units thread material tex dtex denier Ne Nm density packing filaments color twist plies weave warp weft draft knit
     warpknit bar braid carriers angle axial yarn path grid derivative section diameter thickness tolerance loop pitch length radius
@@ -50,7 +50,9 @@ def in_unit(text, unit, millimetres):
         word = line.split()[0] if line.split() else ""
         if word == "end" and opened:
             opened.pop()
-        elif word in ("draft", "chart", "path", "grid", "pattern") and len(line.split()) <= 2:
+        elif word == "grid" or line.split()[:2] == ["section", "polygon"]:
+            opened.append("grid")
+        elif word in ("draft", "chart", "path", "pattern") and len(line.split()) <= 2:
             opened.append(word)
         if word == "units":
             continue
@@ -75,7 +77,7 @@ class Invariance(Case):
     def measured(self, path):
         """The numbers of `check`: of each yarn by its name without that of a use, and of the whole."""
         report = self.folder / "report.json"
-        done = run("check", path, "--report", report, "--quiet")
+        done = run("check", path, "--report", report, "--quiet", "--digits", "full")
         self.assertIn(done.returncode, (0, 3), f"{path.name}: {done.stderr}")
         entry = json.loads(report.read_text())["inputs"][0]
         numbers = {
@@ -86,7 +88,7 @@ class Invariance(Case):
         }
         for number, overlap in enumerate(sorted(entry["overlaps"], key=lambda one: -one["depth"])):
             numbers[f"depth {number}"] = overlap["depth"]
-            numbers[f"area {number}"] = overlap["area"]
+            numbers[f"area {number}"] = overlap.get("area", 0)
         for yarn in entry["yarns"]:
             name = yarn["name"].removeprefix("used.")
             for key in ("length", "volume", "min_bend_radius", "tube_error", "self_overlap", "closed"):

@@ -65,7 +65,8 @@ TEST(YarnCount, DirectSystemsHaveFilamentsAndPlies) {
 // As textured yarns are traded: plies, count, filaments.
 TEST(YarnCount, PliesInFrontOfDirectSystems) {
   EXPECT_NEAR(tex_of("denier 2/150/48"), 300.0 / 9, 1e-12);
-  EXPECT_NE(messages_of("denier 2/150/48").find("2 plies of 150 denier, 48 filaments each"), std::string::npos);
+  EXPECT_NE(messages_of("denier 2/150/48").find("2 plies of 150 denier, 48 filaments each"),
+            std::string::npos);
   EXPECT_NEAR(tex_of("denier 1/70/34"), 70.0 / 9, 1e-12);
   EXPECT_NEAR(tex_of("dtex 2/78"), 15.6, 1e-12);
   EXPECT_NEAR(tex_of("dtex 2/167 f48"), 33.4, 1e-12);
@@ -73,7 +74,8 @@ TEST(YarnCount, PliesInFrontOfDirectSystems) {
 }
 
 TEST(YarnCount, ThousandsOfFilaments) {
-  for (const std::string text : {"tex 800 12k", "tex 800 12K", "800 tex 12K", "tex 800/12k", "tex 800 f12000"}) {
+  for (const std::string text :
+       {"tex 800 12k", "tex 800 12K", "800 tex 12K", "tex 800/12k", "tex 800 f12000"}) {
     EXPECT_NEAR(tex_of(text), 800, 1e-9) << text;
     EXPECT_NE(messages_of(text).find("12000 filaments"), std::string::npos) << messages_of(text);
   }

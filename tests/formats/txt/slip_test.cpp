@@ -70,7 +70,8 @@ std::string remedied(const std::string& text, const Message& message) {
   std::smatch found;
   if (std::regex_search(said, found, std::regex("did you mean '([^']*)'"))) return token(found[1]);
   if (std::regex_search(said, found, std::regex("\\(write '([^']*)'\\)")))
-    return std::regex_replace(text, std::regex("fabric[^\n]*"), found[1].str(), std::regex_constants::format_first_only);
+    return std::regex_replace(text, std::regex("fabric[^\n]*"), found[1].str(),
+                              std::regex_constants::format_first_only);
   if (std::regex_search(said, found, std::regex("write '([^']*)'"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("needs brackets: (\\(.*\\))"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("decimal mark is the point, write ([0-9.]+)")))

@@ -59,9 +59,11 @@ std::vector<YarnPlan> plans_of(const Fabric& fabric, Detail detail = Detail::fil
   return plans;
 }
 
-std::string error_of(const Fabric& fabric) {
+std::string error_of(const Fabric& fabric, Detail detail = Detail::usual) {
+  BuildOptions options;
+  options.detail = detail;
   Diagnostics diagnostics;
-  const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, {}, diagnostics);
+  const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, diagnostics);
   if (!builder) return diagnostics.first_error() != nullptr ? to_string(*diagnostics.first_error()) : "?";
   const Result<YarnPlan> plan = builder->plan(0);
   return plan.ok() ? "" : to_string(plan.error());
@@ -321,7 +323,9 @@ TEST(Plies, WhatCannotBe) {
   Thread flat = ply_thread(3, 10.0, Hand::z);
   flat.section = yarn::Ellipse{2.0, 1.0};
   EXPECT_TRUE(has(error_of(fabric_with(flat, straight_line)), "round section"));
-  EXPECT_TRUE(has(error_of(fabric_with(filament_thread(2000000000, 0.7), straight_line)), "--detail yarn"));
+  const Fabric many = fabric_with(filament_thread(2000000000, 0.7), straight_line);
+  EXPECT_TRUE(has(error_of(many, Detail::filaments), "--detail yarn"));
+  EXPECT_EQ(error_of(many), "");
   EXPECT_TRUE(
       has(error_of(fabric_with(ply_thread(1001, 1.0, Hand::z), straight_line)), "at most 1000 plies"));
   Fabric sized = fabric_with(filament_thread(3, 0.5), straight_line);

@@ -237,7 +237,7 @@ TEST(PressedWeave, ThePoplinsWarpTakesTheCrimp) {
     ASSERT_TRUE(std::regex_search(text, found, std::regex("pressed to ([0-9.]+) mm at the least"))) << text;
     told.insert(std::stod(found[1]));
   }
-  EXPECT_LT(*told.rbegin() / *told.begin(), 1.01);
+  EXPECT_EQ(told.size(), 1U);
   dense(fabric).thickness = *told.begin();
   Diagnostics again;
   EXPECT_TRUE(YarnBuilder::create(fabric, {}, again).has_value());
@@ -308,6 +308,28 @@ TEST(PressedWeave, RelaxedSpacingKeepsTheRepeatAndMovesYarnsTogetherUnderFloats)
   EXPECT_LT(wefts[1] - wefts[0], 0.31);
   EXPECT_NEAR(std::pow((wefts[2] - wefts[1]) / (wefts[4] - wefts[3]), 4.0), 4.0 / 3.0, 1e-6);
   EXPECT_NEAR(wefts[3] - wefts[2], 0.5, 1e-9);  // one change: at the pitch, no less
+}
+
+// Carbon tows of 200 tex, 2 mm apart: whatever thickness is refused, the error names one; no thickness from
+// there on is refused, and none below is accepted.
+TEST(PressedWeave, TheLeastThicknessIsOneNumber) {
+  const Thread tow = yarn_of("a", 200.0, 1.76, 0.78);
+  const auto refusal = [&](double thickness) {
+    Fabric fabric = cloth_of(tow, 2.0, tow, 2.0, Draft::Form::plain, 0, 0, 2);
+    fabric.threads.pop_back();
+    dense(fabric).thickness = thickness;
+    Diagnostics diagnostics;
+    return YarnBuilder::create(fabric, {}, diagnostics) ? std::string() : diagnostics.first_error()->text;
+  };
+  const std::string text = refusal(0.1);
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(text, found, std::regex("pressed to ([0-9.]+) mm at the least"))) << text;
+  const double least = std::stod(found[1]);
+  for (const double share : {0.8, 0.9, 0.95, 0.97, 0.98, 0.99})
+    EXPECT_NE(refusal(share * least).find(found[0]), std::string::npos)
+        << share << ": " << refusal(share * least);
+  for (const double share : {1.0, 1.005, 1.01, 1.02, 1.05, 1.1, 1.3})
+    EXPECT_EQ(refusal(share * least), "") << share;
 }
 
 // Each of the three remedies that a jammed cloth's error names, tried as it stands there.

@@ -47,7 +47,9 @@ Mesh straight_cell(std::array<bool, 3> periodic, int count = 12, bool matrix = t
       mesh_voxels(fabric, bodies,
                   {.count = count, .periodic = periodic, .matrix = matrix, .physics = physics}, diagnostics);
   EXPECT_TRUE(mesh.ok()) << mesh.error().text;
-  EXPECT_TRUE(diagnostics.messages().empty());
+  // 12 voxels fill another share than the yarn, which is said.
+  for (const Message& message : diagnostics.messages())
+    EXPECT_NE(message.text.find("which are too coarse"), std::string::npos) << message.text;
   return mesh.ok() ? *mesh : Mesh{};
 }
 
