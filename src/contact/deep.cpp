@@ -235,16 +235,7 @@ class DeepMeasurer {
     };
     if (const auto found = find_critical(*fa, site_a, *fb, site_b); belongs(found))
       return Spot{*found, fa, fb};
-    if (const auto crease = crease_near(*fa, site_a))
-      if (const auto found = find_crease(*fa, *crease, site_a.y(), *fb, site_b); belongs(found))
-        return Spot{*found, fa, fb, false};
-    if (const auto crease = crease_near(*fb, site_b))
-      if (auto found = find_crease(*fb, *crease, site_b.y(), *fa, site_a)) {
-        std::swap(found->site_a, found->site_b);
-        std::swap(found->p, found->q);
-        found->normal = -found->normal;
-        if (belongs(found)) return Spot{*found, fa, fb, false};
-      }
+    if (const auto spot = crease_spot(*fa, site_a, *fb, site_b); spot && belongs(*spot)) return spot;
     return std::nullopt;
   }
 

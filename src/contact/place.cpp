@@ -298,8 +298,9 @@ class Measurer {
     const Face &fa = model_.face_of(cell(a.cell)), &fb = model_.face_of(cell(b.cell));
     const std::optional<Critical> found = find_critical(fa, a.site, fb, b.site);
     if (!found || found->normal.dot(overlay.axes().n) < 0.5) return false;
-    const double start = overlay.depth(line);
-    if (found->depth < start - slack() || found->depth > start + 0.1 * thickness_ + 0.3 * std::abs(start))
+    // On the line they are deeper than along their normal, where that is inclined.
+    const double start = overlay.depth(line), least = start * found->normal.dot(overlay.axes().n);
+    if (found->depth < least - slack() || found->depth > start + 0.1 * thickness_ + 0.3 * std::abs(start))
       return false;
     const Vec3 middle = 0.5 * (found->p + found->q);
     if ((middle - 0.5 * (a.point + b.point)).norm() > 0.5 * thickness_ + 6.0 * overlay.step().norm())
@@ -355,10 +356,17 @@ class Measurer {
         }
     }
     if (!found || !(found->depth > touching_) || is_known(found->a.point, found->b.point)) return;
-    spots_.push_back({{found->a.site, found->b.site, found->a.point, found->b.point, n, found->depth},
-                      &model_.face_of(cell(found->a.cell)),
-                      &model_.face_of(cell(found->b.cell)),
-                      false});
+    const Face &fa = model_.face_of(cell(found->a.cell)), &fb = model_.face_of(cell(found->b.cell));
+    // The raster's is about right, Newton's exact.
+    const double near = 0.05 * thickness_;
+    const std::optional<Spot> exact = crease_spot(fa, found->a.site, fb, found->b.site);
+    if (exact && exact->normal.dot(n) > 0.7 && std::abs(exact->depth - found->depth) < 0.1 * found->depth &&
+        (exact->p - found->a.point).norm() < near && (exact->q - found->b.point).norm() < near) {
+      if (!is_known(exact->p, exact->q)) spots_.push_back(*exact);
+      return;
+    }
+    spots_.push_back(
+        {{found->a.site, found->b.site, found->a.point, found->b.point, n, found->depth}, &fa, &fb, false});
   }
 
   // Outward, zero where there is none.

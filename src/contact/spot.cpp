@@ -1,5 +1,7 @@
 #include "contact/spot.h"
 
+#include <utility>
+
 #include "contact/least_shift.h"
 
 namespace selvage::contact {
@@ -9,6 +11,23 @@ Minimum minimum_of(const Spot& spot) {
   if (spot.face_a->is_side) minimum.site_a = spot.site_a;
   if (spot.face_b->is_side) minimum.site_b = spot.site_b;
   return minimum;
+}
+
+std::optional<Spot> crease_spot(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b) {
+  const std::optional<double> of_a = crease_near(a, site_a), of_b = crease_near(b, site_b);
+  if (of_a.has_value() == of_b.has_value()) return std::nullopt;
+  std::optional<Critical> found;
+  if (of_a) {
+    found = find_crease(a, *of_a, site_a.y(), b, site_b);
+  } else {
+    found = find_crease(b, *of_b, site_b.y(), a, site_a);
+    if (found) {
+      std::swap(found->site_a, found->site_b);
+      std::swap(found->p, found->q);
+      found->normal = -found->normal;
+    }
+  }
+  return found ? std::optional(Spot{*found, &a, &b, false}) : std::nullopt;
 }
 
 std::optional<Vec3> parting_shift(const std::vector<Spot>& spots, double touching) {

@@ -19,6 +19,10 @@ struct Spot : Critical {
 
 Minimum minimum_of(const Spot& spot);
 
+// Where a crease of one surface, near its site, is deepest in the other one, which is smooth there. Nothing:
+// there is no such crease.
+std::optional<Spot> crease_spot(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b);
+
 // The least translation of b that ends the overlap at all spots deeper than `touching`: each asks for its own
 // depth along its own normal, and both are computed again with b where the translation puts it, until it
 // changes by less than 1e-10 of itself. Spots on edges keep what they ask for. Nothing: their demands

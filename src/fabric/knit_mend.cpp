@@ -5,7 +5,6 @@
 #include <numbers>
 #include <variant>
 
-#include "core/rounding.h"
 #include "fabric/clearance.h"
 #include "yarn/outline.h"
 
@@ -194,25 +193,6 @@ long long KnitMoves::loops_solved(const KnitField& field) {
   return ties[0].reduced_count() * ties[1].reduced_count() * field.ends;
 }
 
-namespace {
-
-// Lengths in units of half the width.
-KnitYarn in_ratios(KnitYarn yarn) {
-  const auto ratio = [unit = yarn.half.x()](double length) { return in_units_of(unit, length); };
-  yarn.section = yarn::with_lengths(yarn.section, ratio);
-  yarn.half = {1, ratio(yarn.half.y())};
-  yarn.gap = ratio(yarn.gap);
-  return yarn;
-}
-
-// Points in units of r, without the rounding that the unit of the text has left in them.
-Vec3 without_rounding(const Vec3& point) {
-  constexpr double step = 0x1p-30;
-  return step * (point / step).array().round().matrix();
-}
-
-}  // namespace
-
 KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn)
     : ties_(ties_of(field, true, yarn.relaxes)) {
   solve(field, yarn);
@@ -248,8 +228,7 @@ bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {
   return moves.mending_.is_solved();
 }
 
-void KnitMoves::solve(const KnitField& field, const KnitYarn& given, int max_steps, Start start) {
-  const KnitYarn yarn = in_ratios(given);
+void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_steps, Start start) {
   KnitField reduced = field;
   reduced.last_course = field.first_course + ties_[0].reduced_count() - 1;
   reduced.last_wale = field.first_wale + ties_[1].reduced_count() - 1;
@@ -269,14 +248,13 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& given, int max_ste
   problem.measure = scale;
   problem.max_steps = max_steps;
   problem.relaxes = yarn.relaxes;
-  if (ties_[0].is_periodic())
-    problem.repeat = without_rounding({0, field.shape.course * field.chart.height(1), 0});
+  if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course * field.chart.height(1), 0};
   const bool goes_on = ties_[1].is_periodic();
   for (long long l = 0; l < courses * ends_; ++l) {
     const long long c = l / ends_;
     const int end = static_cast<int>(l % ends_);
     MendLine line;
-    if (goes_on) line.period = without_rounding({field.shape.wale, 0, 0});
+    if (goes_on) line.period = {field.shape.wale, 0, 0};
     const long long course = field.first_course + c;
     const RowExtent extent = extent_of(reduced, course);
     if (extent.first > extent.last) continue;
@@ -331,9 +309,6 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& given, int max_ste
   } else {
     problem.images = images_of(problem);
   }
-  for (MendLine& line : problem.lines)
-    for (Vec3& point : line.points) point = without_rounding(point);
-  for (Vec3& move : problem.start) move = without_rounding(move);
   mending_ = mend(problem);
 }
 

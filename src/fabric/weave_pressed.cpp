@@ -129,19 +129,23 @@ std::optional<PressedCloth> press_once(const LooseCloth& cloth) {
   return best;
 }
 
-// Thicknesses that a cloth is pressed to, each a hundredth below the one before, from that which it has by
-// itself. A search that starts anew for each does not find all that there are; where one is found all that
-// are larger are allowed.
-constexpr double thickness_factor = 0.99, thinnest_share = 0.25;
+// Thicknesses that a cloth is pressed to, each a two hundredth below the one before, from that which it has
+// by itself. A search that starts anew for each does not find all that there are; where one is found all that
+// are larger are allowed, and so many in turn without one are the end.
+constexpr double thickness_factor = 0.995;
+constexpr int most_failures = 40;
 
 // From the largest of them on that is not above `most` down: calls use(thickness, cloth) until it says that
 // it is enough.
 template <class Use>
 void for_thicknesses(LooseCloth cloth, double free, double most, const Use& use) {
-  for (double thickness = free; thickness > thinnest_share * free; thickness *= thickness_factor) {
+  int failures = 0;
+  for (double thickness = free; failures < most_failures; thickness *= thickness_factor) {
     if (thickness > most) continue;
     cloth.thickness = thickness;
-    if (std::optional<PressedCloth> pressed = press_once(cloth); pressed && use(thickness, *pressed)) return;
+    std::optional<PressedCloth> pressed = press_once(cloth);
+    failures = pressed ? 0 : failures + 1;
+    if (pressed && use(thickness, *pressed)) return;
   }
 }
 
@@ -297,8 +301,15 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
 std::optional<double> least_thickness(const LooseCloth& cloth) {
   const std::optional<double> free = free_thickness(cloth);
   if (!free) return std::nullopt;
+  // In large steps to where the first one fails, from there in small ones.
+  constexpr int large = 8;
   double least = *free;
-  for_thicknesses(cloth, *free, *free, [&](double thickness, PressedCloth&) {
+  LooseCloth thinner = cloth;
+  for (double next = least; thinner.thickness = next, press_once(thinner);) {
+    least = next;
+    for (int step = 0; step < large; ++step) next *= thickness_factor;
+  }
+  for_thicknesses(cloth, *free, least, [&](double thickness, PressedCloth&) {
     least = thickness;
     return false;
   });

@@ -41,8 +41,8 @@ std::optional<PressedCloth> press_cloth(const LooseCloth& cloth);
 // rises from 0.6 to 0.73`.
 std::string pressing_of(const WovenThread& loose, const WovenThread& pressed, Unit units);
 
-// The least thickness that the cloth can be pressed to, file units, to three digits: the same whatever its own
-// `thickness` asks for. Nothing where it cannot be pressed at all.
+// The least thickness that the cloth can be pressed to, file units, to three digits: the same whatever its
+// own `thickness` asks for. Nothing where it cannot be pressed at all.
 std::optional<double> least_thickness(const LooseCloth& cloth);
 
 // For a cloth that cannot be pressed: by how much it is too dense, and three remedies, each of them tried.
