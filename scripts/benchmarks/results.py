@@ -632,8 +632,8 @@ def main():
             + contact(given.bin, folder, given.quick)
             + "\n## Tetrahedra of a unit cell: the plain weave of samples/cell_plain.txt with its matrix\n\n"
             "Its yarns keep the gap that `mesh` has them keep, 5 % of their thickness. The surfaces are the same for all: those that selvage made; "
-            "gmsh's edges inside the volumes are scaled until it makes about as many tetrahedra. The time of selvage is that of TetGen in its worker, of the checks "
-            "of what came back, of the points put in and of the improvement to 12 degrees "
+            "gmsh's edges inside the volumes are scaled until it makes about as many tetrahedra. The time of selvage is that of TetGen in its "
+            "worker, of the checks of what came back, of the points put in and of the improvement to 12 degrees "
             "or 15, as far as it gets; gmsh's is what it says of its own meshing and optimizing of the volumes, as it does both by itself. Processor "
             "time is that of all threads and of the worker.\n\n" + tetrahedra(given.bin, folder, given.quick)
         )
