@@ -24,6 +24,7 @@ class LengthTable {
   LengthTable(const std::vector<Section>& sections, std::vector<double> marks)
       : ts_{marks.front()}, lengths_{0.0} {
     std::vector<Vec2> scales;
+    scales.reserve(sections.size());
     for (const Section& section : sections) scales.push_back(sizes_of(section).cwiseInverse());
     marks.push_back(marks.front() + 1);
     // Between their corners straight outlines have one pace.
@@ -97,6 +98,7 @@ std::vector<double> OutlinePoints::section_parameters() const {
 
 void OutlinePoints::place(const std::vector<Section>& sections, int per_turn) {
   std::vector<const Section*> all;
+  all.reserve(sections.size());
   for (const Section& section : sections) all.push_back(&section);
   const std::vector<double> corners = corners_of(all);
   const LengthTable table(sections, corners.empty() ? std::vector<double>{0, 0.25, 0.5, 0.75} : corners);

@@ -300,10 +300,11 @@ void check_pitch(Parser& p, std::span<const Fabric* const> inside, const fabric:
           ? std::string()
           : fmt::format("for {0} yarns on a length write '{0}/{1}'; ", number, unit);
   p.error(pitch.spot,
-          fmt::format("the pitch {} is {:.0f} times the width of the yarn, {:.3g} {}: {}for a cloth as open "
+          fmt::format("the pitch {} is {} times the width of the yarn, {:.3g} {}: {}for a cloth as open "
                       "as this write '{} open'",
-                      in_quotes(pitch.text), widths, width, name_of(inside.front()->units), by_length,
-                      pitch.text));
+                      in_quotes(pitch.text),
+                      widths < 1e6 ? fmt::format("{:.0f}", widths) : fmt::format("{:.2g}", widths), width,
+                      name_of(inside.front()->units), by_length, pitch.text));
 }
 
 void check_pitches(Parser& p, std::vector<const Fabric*>& inside) {

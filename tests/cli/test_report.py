@@ -198,7 +198,8 @@ class Resume(Case):
         self.assertEqual(self.convert("--tolerance", "0.0020", "--iges-lines", "5000")["done"], 3)
         self.assertEqual(self.convert("--iges-lines", "5000", "--tolerance", "2e-3", "-j", "2")["skipped"], 3)
         self.assertEqual(self.convert("--tolerance", "2e-3")["done"], 3)
-        self.assertEqual(self.convert("--tolerance", "2e-3", "--detail", "filaments")["skipped"], 3)
+        self.assertEqual(self.convert("--tolerance", "2e-3", "--detail", "usual")["skipped"], 3)
+        self.assertEqual(self.convert("--tolerance", "2e-3", "--detail", "filaments")["done"], 3)
 
     def test_another_program_is_other_outputs(self):
         """Another version, other sources, another library: it may write other bytes."""
