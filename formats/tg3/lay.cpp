@@ -124,9 +124,9 @@ class Layer {
     for (const auto& [low, high] : ranges) {
       std::vector<Steps> longer;
       for (const Steps& steps : all)
-        for (double step = low; step <= high; ++step) {
+        for (int step = static_cast<int>(low); step <= static_cast<int>(high); ++step) {
           longer.push_back(steps);
-          longer.back().push_back(static_cast<int>(step));
+          longer.back().push_back(step);
         }
       all = std::move(longer);
     }

@@ -167,6 +167,7 @@ std::vector<double> corners_of(std::span<const Section* const> sections) {
 Vec2 sizes_of(const Section& section) {
   std::vector<Vec2> points;
   constexpr int samples = 256;
+  points.reserve(samples + section.corners.size());
   for (int i = 0; i < samples; ++i) points.push_back(section.point(static_cast<double>(i) / samples));
   for (const double corner : section.corners) points.push_back(section.point(corner));
   return bounds_of(points).sizes();

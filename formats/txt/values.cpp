@@ -81,6 +81,7 @@ constexpr std::array values = {
           "ways."},
     Value{"oxford", "draft", "2 ends x 1 pick as one: `basket 2x1`."},
     Value{"drill", "draft", "`twill 3/1 S`."},
+    Value{"sateen", "draft", "`sateen 5` is `satin 5 weft-faced`."},
     Value{"f", "dtex", "The number behind it is that of filaments: `dtex 167 f48`; `48f` is the same."},
     Value{"fil", "dtex", "As f."},
     Value{"ply", "Nm Ne", "Behind two numbers: the smaller one counts plies, as in `Ne 30/2 ply`."},

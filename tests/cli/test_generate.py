@@ -88,7 +88,7 @@ class Generated(Case):
         for command in self.usage["commands"]:
             expected = {name for option in command["options"] for name in option["names"] if name.startswith("-")}
             self.assertEqual(set(self.completed(command["name"], "-")), expected | {"-h", "--help"}, command["name"])
-        self.assertEqual(self.completed("mesh", "--mat"), ["--matrix", "--matrix-size"])
+        self.assertEqual(self.completed("mesh", "--mat"), ["--matrix", "--matrix-material", "--matrix-size"])
 
     def test_bash_of_values(self):
         self.assertEqual(self.completed("convert", "--ends", ""), ["patch", "fan", "planar", "none"])
