@@ -283,7 +283,7 @@ class Triangles(Case):
                 self.assertEqual((issues["numErrors"], issues["numWarnings"]), (0, 0), issues)
 
     def test_far_from_the_origin(self):
-        # Floats near 100000 are 1/128 apart, more than the tolerance 0.001.
+        # Floats near 100000 are 1/128 apart, more than the tolerance 0.004.
         far = self.source(cylinder(at=100000.0), "far.txt")
         meshes, soup, messages = self.write(far)
         for name in ("STL", "glTF"):

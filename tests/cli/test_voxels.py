@@ -108,7 +108,7 @@ class Voxels(Case):
             return float(filled[1]), float(filled[2]), result.stderr
 
         filled, wanted, said = shares("--voxel", "20")
-        self.succeeds("convert", text, "--gap", "0.05", "--cut", "-o", self.folder / "cut.step")
+        self.succeeds("convert", text, "--gap", "0.0065", "--cut", "-o", self.folder / "cut.step")
         parts = json.loads(self.succeeds("info", "--json", self.folder / "cut.step").stdout)["inputs"][0]["parts"]
         with np.load(self.made(text, 20, names=("flat.npz",))[0]) as arrays:
             size = np.prod(np.diag(arrays["vectors"]))
