@@ -7,6 +7,7 @@
 #include <charconv>
 #include <span>
 
+#include "core/text_report.h"
 #include "core/words.h"
 #include "formats/txt/words.h"
 
@@ -114,7 +115,7 @@ std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
   const std::string_view first = words.front(), last = words.back();
   const auto is = [](std::string_view word, std::string_view name) { return same_word(word, name); };
   if (words.size() == 2)
-    if (const auto understood = named_with_numbers(first, last, draft)) return understood;
+    if (auto understood = named_with_numbers(first, last, draft)) return understood;
   if (words.size() == 1) {
     for (const std::string_view name : plain_names)
       if (is(first, name)) return draft.form = Form::plain, std::string();
