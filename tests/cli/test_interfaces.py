@@ -313,7 +313,8 @@ class Cells(Interfaces):
         ):
             out = self.folder / f"{interface}.inp"
             done = self.succeeds(
-                "mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--interface", interface, "-o", out
+                *("mesh", SAMPLES / "cell_fibre.txt", "--matrix", "--periodic", "--order", "1"),
+                *("--interface", interface, "-o", out),
             )
             if interface == "cohesive":  # the first: the surfaces have as many triangles
                 count = len(interfaces.Deck(out).wedges)
@@ -426,7 +427,7 @@ class Surfaces(Interfaces):
     """`--interface surfaces`."""
 
     def test_sides_face_each_other(self):
-        deck = self.deck(SAMPLES / "cell_straight.txt", "--interface", "surfaces", "--size", "0.25")
+        deck = self.deck(SAMPLES / "cell_straight.txt", "--interface", "surfaces", "--size", "0.25", "--order", "1")
         region_of = deck.region_of_nodes()
         side, facing = deck.surfaces["tow_Side"], deck.surfaces["tow_Facing"]
 
@@ -555,7 +556,7 @@ class OtherFormats(Interfaces):
                 self.assertEqual(solids[frozenset((w[a], w[b]))], w[6 + k])
 
     def test_surfaces_everywhere(self):
-        deck = self.everything("--interface", "surfaces", "--to", "inp,cdb,k,msh,vtu")
+        deck = self.everything("--interface", "surfaces", "--order", "1", "--to", "inp,cdb,k,msh,vtu")
         count = len(deck.surfaces["tow_Side"])
         text = (self.out / "cell_straight.k").read_text()
         for name in ("tow_Side", "tow_Facing"):
