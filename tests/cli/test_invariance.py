@@ -36,7 +36,7 @@ def in_unit(text, unit, millimetres):
     """The same fabric with its lengths in another unit; None: it has statements that this test does not know."""
     text = without_comments(text)
     if re.search(r"^\s*units +(?!mm)", text, re.MULTILINE) or re.search(
-        r"^\s*(param|points|line|use +file) ", text, re.MULTILINE
+        r"^\s*(param|points|line|use +file|section +(?:power|loop7)) ", text, re.MULTILINE
     ):
         return None
     words = set(re.findall(r"^\s*([A-Za-z][\w-]*)", text, re.MULTILINE))

@@ -54,20 +54,28 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
   const std::string_view head = source.bytes().substr(0, 4096);
   if (format.sniff != nullptr) static_cast<void>(format.sniff(head));
   if (format.part_mark != nullptr) static_cast<void>(format.part_mark(head));
-  Diagnostics diagnostics;
+  std::vector<Message> messages;
   // A rule of every reader: nothing comes back exactly when there was an error.
+  const auto result_of = [&](const auto& read) {
+    Diagnostics diagnostics;
+    auto result = read(source, diagnostics);
+    if (result.has_value() == diagnostics.has_errors()) std::abort();
+    messages.insert(messages.end(), diagnostics.messages().begin(), diagnostics.messages().end());
+    return result;
+  };
   const auto reads = [&](auto* reader) {
-    return reader != nullptr && reader(source, diagnostics).has_value();
+    if (reader != nullptr) static_cast<void>(result_of(reader));
   };
   std::optional<fem::FieldMesh> mesh;
-  if (format.read_mesh != nullptr) mesh = format.read_mesh(source, diagnostics);
-  const bool has_read = mesh || reads(format.read_fabric) || reads(format.read_model) ||
-                        reads(format.read_points) || reads(format.read_deck);
-  if (has_read == diagnostics.has_errors()) std::abort();
+  if (format.read_mesh != nullptr) mesh = result_of(format.read_mesh);
+  reads(format.read_fabric);
+  reads(format.read_model);
+  reads(format.read_points);
+  reads(format.read_deck);
   if (mesh) evaluate(*mesh);
   // What takes as long as reading and is the same for most inputs: one in four has it done.
   if (bytes.size() % 4 != 0) return;
-  for (const Message& message : diagnostics.messages()) static_cast<void>(to_string(message));
+  for (const Message& message : messages) static_cast<void>(to_string(message));
   if (format.check_structure != nullptr) {
     Findings findings;
     format.check_structure(source, findings);
