@@ -211,7 +211,7 @@ constexpr std::array lessons = {
         "draft", "weave",
         "draft plain | twill A/B[/...] [Z | S] | satin N[/STEP] [weft-faced | warp-faced] | basket "
         "ENDSxPICKS | "
-        "basket A/B | oxford | drill | 5HS | leno "
+        "basket A/B | oxford | sateen N | drill | 5HS | leno "
         "[half | full] | file NAME",
         "Which yarn is on top; without a word a block of rows of 0 and 1 (1: warp on top) that `end` closes. "
         "A number of shafts with HS, H or harness behind it (`5HS`, `8-harness`) is a satin.",

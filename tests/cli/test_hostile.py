@@ -52,7 +52,10 @@ REFUSED = {
         "fabric 1\ntolerance 1e-300\n" + path("  diameter 0.4\n")[9:],
         r":1:1: error: a tolerance of 1e-300 mm",
     ),
-    "weave_pitch": (weave("2 pitch 9.2e18"), r":6:17: error: the pitch '9\.2e18' is \d\.\d+e\+19 times the width of the yarn"),
+    "weave_pitch": (
+        weave("2 pitch 9.2e18"),
+        r":6:17: error: the pitch '9\.2e18' is \d\.\d+e\+19 times the width of the yarn",
+    ),
     "weave_tiny_pitch": (weave("2 pitch 1e-300"), r":6:2: error: a pitch of 1e-300 mm is out of all proportion"),
     "weave_count": (weave("2147483647 pitch 2"), r":5:1: error: this would be .* yarns through .* data points"),
     "weave_layers": (
