@@ -279,7 +279,7 @@ end
         braiders, axial = sheet["systems"]["braider"], sheet["systems"]["axial"]
         a_mm = 16 / (71.2 * math.cos(math.radians(60)))
         self.near(sheet["braid_angle"], 60, "angle")
-        self.near(braiders["per_cm"], 160 / 71.2, "braiders")
+        self.near(braiders["per_cm"], 10 * a_mm, "braiders")
         self.near(axial["per_cm"], 80 / 71.2, "axial yarns")
         self.assertAlmostEqual(axial["crimp"], 0, delta=1e-6)
         self.assertTrue(0 < braiders["crimp"] < 0.02, braiders["crimp"])
