@@ -33,14 +33,15 @@ namespace {
 
 using std::numbers::pi;
 
-// Where the curve first reaches a plane across an axis from below; none where it does not.
-std::optional<double> first_crossing(const nurbs::Curve& curve, int axis, double plane) {
-  const auto beyond = [&](double t) { return nurbs::evaluate(curve, t)[axis] >= plane; };
+// Where the curve first reaches a plane across an axis, going up (`way` 1) or down (-1); none where it does
+// not.
+std::optional<double> first_crossing(const nurbs::Curve& curve, int axis, double plane, double way) {
+  const auto reaches = [&](const Vec3& point) { return way * (point[axis] - plane) >= 0; };
+  const auto beyond = [&](double t) { return reaches(nurbs::evaluate(curve, t)); };
   constexpr int looks = 16, halvings = 60;
   const auto degree = static_cast<std::size_t>(curve.degree);
   for (std::size_t span = degree; span < curve.points.size(); ++span) {
     const double from = curve.knots[span], to = curve.knots[span + 1];
-    const auto reaches = [&](const Vec3& point) { return point[axis] >= plane; };
     const auto points = std::span(curve.points).subspan(span - degree, degree + 1);
     if (!(to > from) || std::ranges::none_of(points, reaches)) continue;
     double low = from;
@@ -90,9 +91,14 @@ void look_round(const YarnBuilder::Shaped& yarn, Stretch& piece) {
   }
 }
 
+// Of the part from one plane to the other, in the direction of the yarn.
 std::optional<Stretch> piece_of(const yarn::Body& body, int axis, double from, double to) {
-  const std::optional<double> begin = first_crossing(body.axis, axis, from);
-  const std::optional<double> end = first_crossing(body.axis, axis, to);
+  const double way = nurbs::evaluate(body.axis, body.axis.last_parameter())[axis] >=
+                             nurbs::evaluate(body.axis, body.axis.first_parameter())[axis]
+                         ? 1
+                         : -1;
+  const std::optional<double> begin = first_crossing(body.axis, axis, way > 0 ? from : to, way);
+  const std::optional<double> end = first_crossing(body.axis, axis, way > 0 ? to : from, way);
   if (!begin || !end || !(*begin < *end)) return std::nullopt;
   Stretch piece;
   piece.forward = to - from;

@@ -101,16 +101,18 @@ class Voxels(Case):
             "cell repeat\n  margin 0.006\n  matrix resin\n  periodic x y\nend\n"
         )
 
+        gap = ("--gap", "0.0065")  # voxels and solids have another one by default
+
         def shares(*options):
-            result = run("mesh", text, "--matrix", "--periodic", *options, "-o", self.folder / "flat.vtu")
+            result = run("mesh", text, "--matrix", "--periodic", *gap, *options, "-o", self.folder / "flat.vtu")
             self.assertEqual(result.returncode, 0, result.stderr)
             filled = re.search(r"yarns fill ([0-9.]+) % of the cell \(wanted: ([0-9.]+) %\)", result.stdout)
             return float(filled[1]), float(filled[2]), result.stderr
 
         filled, wanted, said = shares("--voxel", "20")
-        self.succeeds("convert", text, "--gap", "0.0065", "--cut", "-o", self.folder / "cut.step")
+        self.succeeds("convert", text, *gap, "--cut", "-o", self.folder / "cut.step")
         parts = json.loads(self.succeeds("info", "--json", self.folder / "cut.step").stdout)["inputs"][0]["parts"]
-        with np.load(self.made(text, 20, names=("flat.npz",))[0]) as arrays:
+        with np.load(self.made(text, 20, *gap, names=("flat.npz",))[0]) as arrays:
             size = np.prod(np.diag(arrays["vectors"]))
         self.assertAlmostEqual(wanted, 100 * sum(part["volume"] for part in parts) / size, delta=0.05)
         self.assertGreater(abs(filled - wanted), 0.05 * wanted)
