@@ -158,6 +158,10 @@ struct Descriptor {
   std::optional<fabric::Fabric> (*read_with)(const Source& source,
                                              const std::vector<fabric::Setting>& settings,
                                              Diagnostics& diagnostics) = nullptr;
+  // The same with surfaces within a tolerance (file units, > 0) of what the file says. Null: a format whose
+  // surfaces are exact, or tubes, which have their tolerance when they are built.
+  std::optional<fabric::Fabric> (*read_within)(const Source& source, double tolerance,
+                                               Diagnostics& diagnostics) = nullptr;
 
   // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this, read_fabric or
   // read_points.

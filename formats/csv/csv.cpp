@@ -24,7 +24,7 @@ class Writer final : public BodyWriter {
   Status add_line(const yarn::Body& body) override {
     const std::string name = csv_value(body.name);
     std::size_t number = 0;
-    for (const yarn::LineSample& sample : yarn::line_samples(body, line_tolerance(options_, body))) {
+    for (const yarn::LineSample& sample : sampler_.sample(body, line_tolerance(options_, body))) {
       text_ << name << ',' << ++number << ',' << sample.parameter << ',' << sample.arc_length;
       for (const Vec3& vector : {sample.position, sample.tangent, sample.side, sample.up})
         for (const double value : vector) text_ << ',' << value + 0.0;
@@ -45,6 +45,7 @@ class Writer final : public BodyWriter {
  private:
   SurfaceOptions options_;
   TextBuffer text_;
+  yarn::LineSampler sampler_;
   std::uint64_t lines_ = 0, points_ = 0;
 };
 

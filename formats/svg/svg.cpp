@@ -89,7 +89,7 @@ class Writer final : public BodyWriter {
 
   Status add_line(const yarn::Body& body) override {
     const double tolerance = line_tolerance(options_, body);
-    for (const yarn::LineSample& sample : yarn::line_samples(body, tolerance))
+    for (const yarn::LineSample& sample : sampler_.sample(body, tolerance))
       box_.extend(Vec2(sample.position.head<2>()));
     ++pieces_;
     paths_ += "<path id=\"" + new_id(body.name) + "\" stroke=\"#" + yarn::hex(body.color) + "\" d=\"" +
@@ -133,6 +133,7 @@ class Writer final : public BodyWriter {
 
   OutputFile* output_;
   SurfaceOptions options_;
+  yarn::LineSampler sampler_;
   double mm_;
   nurbs::Box2 box_;
   std::string paths_;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "core/bounds.h"
+#include "core/rounding.h"
 #include "core/words.h"
 #include "formats/tg3/construction.h"
 #include "formats/tg3/lay.h"
@@ -50,17 +52,15 @@ std::size_t num_control_points(const fabric::Fabric& fabric) {
   return count;
 }
 
-// 1/1000 of the smallest size of the yarn's sections, as of tubes.
-double usual_tolerance(const TextileYarn& yarn) {
-  double smallest = infinity;
-  for (const Section& section : yarn.sections) smallest = std::min(smallest, sizes_of(section).minCoeff());
-  return 1e-3 * smallest;
-}
+constexpr double usual_tolerance = 1e-3;      // of the smallest size of the sections, as of tubes
+constexpr std::size_t bytes_a_point = 200;    // as IGES, about
+constexpr double most_times = 10;             // the bytes of the file
+constexpr std::size_t small_bytes = 8 << 20;  // of which there is nothing to say
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report)
-      : source_(source), fields_(source, report), properties_(fields_, fabric_) {
+  Reader(const Source& source, double tolerance, TextReport& report)
+      : source_(source), tolerance_(tolerance), fields_(source, report), properties_(fields_, fabric_) {
     fabric_.file = source.name();
   }
 
@@ -163,29 +163,67 @@ class Reader {
     fabric_.tell_threads_their_materials();
   }
 
-  // Surfaces that would be far larger than the file are laid within the usual tolerance of tubes.
-  void fit(const Element& element, const Textile& textile) {
-    constexpr std::size_t bytes_a_point = 200, most_times = 10,
-                          always = std::size_t{8} << 20U;  // as IGES, about
-    const std::size_t exact = num_control_points(fabric_);
-    if (fields_.errors() > 0 ||
-        bytes_a_point * exact <= std::max(most_times * source_.bytes().size(), always))
-      return;
-    TextReport said(source_);  // by the first turn
+  struct Fitted {
+    fabric::Fabric fabric;
+    double deviation = 0;  // from the sections, file units
+    std::size_t control_points = 0;
+  };
+  // The yarns within a tolerance. Nothing: it has an error that the exact ones have not.
+  [[nodiscard]] std::optional<Fitted> fitted(const Textile& textile, double tolerance) const {
+    TextReport said(source_);  // warnings, too: by the exact ones
     const Fields silent(source_, said);
-    fabric::Fabric fitted;
-    double deviation = 0;
+    Fitted made;
     for (const TextileYarn& yarn : textile.yarns)
-      deviation = std::max(deviation, lay(yarn, textile.domain, usual_tolerance(yarn), silent, fitted));
-    if (said.errors() > 0) return;
-    const std::size_t kept = num_control_points(fitted);
-    fabric_.items = std::move(fitted.items);
-    fields_.note(
-        element,
-        fmt::format("the surfaces are fitted to within {:.2g} {} of their sections, with {} control points "
-                    "instead of {}: in IGES about {:.2g} times the bytes of this file",
-                    deviation, name_of(fabric_.units), kept, exact,
-                    static_cast<double>(bytes_a_point * kept) / static_cast<double>(source_.bytes().size())));
+      made.deviation = std::max(made.deviation, lay(yarn, textile.domain, tolerance, silent, made.fabric));
+    if (said.errors() > 0) return std::nullopt;
+    made.control_points = num_control_points(made.fabric);
+    return made;
+  }
+
+  // How large IGES is that has these, in bytes of this file, about.
+  [[nodiscard]] double growth(std::size_t control_points) const {
+    return static_cast<double>(bytes_a_point * control_points) / static_cast<double>(source_.bytes().size());
+  }
+
+  // The words that say with which --tolerance the surfaces get as small as they should be.
+  [[nodiscard]] std::string smaller(const Textile& textile, const Fitted& present, double tolerance,
+                                    double thinnest) const {
+    if (growth(present.control_points) <= most_times) return "";
+    for (int doubled = 1; std::ldexp(tolerance, doubled) <= 0.1 * thinnest; ++doubled) {
+      const double given = rounded_down(std::ldexp(tolerance, doubled));
+      const std::optional<Fitted> next = fitted(textile, given);
+      if (next && growth(next->control_points) <= most_times)
+        return fmt::format("; --tolerance {:.3g} gives {:.3g} times", given, growth(next->control_points));
+    }
+    return fmt::format("; no --tolerance up to a tenth of the thinnest section gives {:.3g} times",
+                       most_times);
+  }
+
+  // Surfaces are laid within the tolerance that was given, and those that would be far larger than the file
+  // within the usual one of tubes.
+  void fit(const Element& element, const Textile& textile) {
+    const std::size_t exact = num_control_points(fabric_);
+    if (fields_.errors() > 0 || exact == 0) return;
+    const bool is_large = growth(exact) > most_times && bytes_a_point * exact > small_bytes;
+    if (tolerance_ == 0 && !is_large) return;
+    double thinnest = infinity;
+    for (const TextileYarn& yarn : textile.yarns)
+      for (const Section& section : yarn.sections)
+        thinnest = std::min(thinnest, sizes_of(section).minCoeff());
+    const double tolerance = tolerance_ > 0 ? tolerance_ : usual_tolerance * thinnest;
+    std::optional<Fitted> made = fitted(textile, tolerance);
+    if (!made || made->control_points >= exact) return;
+    fabric_.items = std::move(made->fabric.items);
+    const std::string said = fmt::format(
+        "the surfaces are fitted to within {:.2g} {} of their sections, with {} control points instead of "
+        "{}: in IGES about {:.3g} MB, {:.3g} times the bytes of this file{}",
+        made->deviation, name_of(fabric_.units), made->control_points, exact,
+        1e-6 * static_cast<double>(bytes_a_point * made->control_points), growth(made->control_points),
+        is_large ? smaller(textile, *made, tolerance, thinnest) : "");
+    if (tolerance_ > 0)
+      fields_.note(element, said);
+    else
+      fields_.warning(element, said);
   }
 
   void read_yarns(const Element& element, Textile& textile) {
@@ -222,6 +260,7 @@ class Reader {
   }
 
   const Source& source_;
+  double tolerance_;  // file units; 0: none was given
   Fields fields_;
   fabric::Fabric fabric_;
   Properties properties_;
@@ -237,8 +276,13 @@ bool is_tg3(std::string_view head) {
 }
 
 std::optional<fabric::Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
+  return read_within(source, 0, diagnostics);
+}
+
+std::optional<fabric::Fabric> read_within(const Source& source, double tolerance, Diagnostics& diagnostics) {
   return reported(
-      source, diagnostics, [](const Source& text, TextReport& report) -> std::optional<fabric::Fabric> {
+      source, diagnostics,
+      [tolerance](const Source& text, TextReport& report) -> std::optional<fabric::Fabric> {
         if (text.bytes().size() > most_bytes)
           return report.error(
               spot_at(text, {1, 1}),
@@ -249,7 +293,7 @@ std::optional<fabric::Fabric> read_fabric(const Source& source, Diagnostics& dia
         const Result<Element> model = read_xml(text.bytes(), computed);
         if (!model)
           return report.error(spot_at(text, model.error().place), model.error().text, model.error().kind);
-        return Reader(text, report).read(*model);
+        return Reader(text, tolerance, report).read(*model);
       });
 }
 

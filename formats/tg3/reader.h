@@ -17,4 +17,7 @@ bool is_tg3(std::string_view head);
 // another version, what README.md says is not read, and what read_yarn, read_domain and lay refuse.
 std::optional<fabric::Fabric> read_fabric(const Source& source, Diagnostics& diagnostics);
 
+// The same with surfaces within `tolerance` (file units, > 0) of the sections of the file. 0: as read_fabric.
+std::optional<fabric::Fabric> read_within(const Source& source, double tolerance, Diagnostics& diagnostics);
+
 }  // namespace selvage::formats::tg3

@@ -8,7 +8,8 @@ const Descriptor& descriptor() {
                                   .title = "TexGen 3 models: yarns by nodes and sections",
                                   .extensions = {".tg3"},
                                   .sniff = is_tg3,
-                                  .read_fabric = read_fabric};
+                                  .read_fabric = read_fabric,
+                                  .read_within = read_within};
   return self;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -22,14 +23,16 @@ using fabric::LinearDensity;
 using System = LinearDensity::Measure;
 
 // What trades call the systems, beside `density_words`.
-constexpr std::array<Word<System>, 8> trade_words{{{"Td", System::denier},
-                                                   {"den", System::denier},
-                                                   {"D", System::denier},
-                                                   {"deniers", System::denier},
-                                                   {"decitex", System::dtex},
-                                                   {"Nec", System::ne},
-                                                   {"NeC", System::ne},
-                                                   {"s", System::ne}}};
+constexpr std::array<Word<System>, 10> trade_words{{{"Td", System::denier},
+                                                    {"den", System::denier},
+                                                    {"D", System::denier},
+                                                    {"deniers", System::denier},
+                                                    {"decitex", System::dtex},
+                                                    {"Nec", System::ne},
+                                                    {"NeC", System::ne},
+                                                    {"s", System::ne},
+                                                    {"cc", System::ne},
+                                                    {"metric", System::nm}}};
 
 std::optional<System> system_named(std::string_view word) {
   for (const auto& known : density_words)
@@ -39,16 +42,33 @@ std::optional<System> system_named(std::string_view word) {
   return std::nullopt;
 }
 
-// Counts of hanks in an English pound of yarn that are none of `density_words`; read as Nm.
-struct Hanks {
+// What a word measures in that is none of `density_words`.
+struct TradeUnit {
   std::string_view word;
-  double yards;
+  System system;        // that it is read as
+  double factor;        // its 1 in that system
+  std::string_view is;  // what it is, for the note
 };
-constexpr std::array<Hanks, 5> hank_words{
-    {{"NeL", 300}, {"lea", 300}, {"NeK", 560}, {"NeW", 560}, {"worsted", 560}}};
+constexpr TradeUnit hanks(std::string_view word, double yards, std::string_view is) {
+  constexpr double metres_a_yard = 0.9144, grams_a_pound = 453.59237;
+  return {word, System::nm, yards * metres_a_yard / grams_a_pound, is};
+}
+constexpr std::string_view of_linen = "the number of hanks of 300 yards in a pound",
+                           of_worsted = "the number of hanks of 560 yards in a pound";
+constexpr std::array<TradeUnit, 10> trade_units{
+    {hanks("NeL", 300, of_linen),
+     hanks("lea", 300, of_linen),
+     hanks("NeK", 560, of_worsted),
+     hanks("NeW", 560, of_worsted),
+     hanks("Nw", 560, of_worsted),
+     hanks("worsted", 560, of_worsted),
+     hanks("YSW", 256, "the number of skeins of 256 yards in a pound"),
+     {"ktex", System::tex, 1e3, "1000 tex"},
+     {"kilotex", System::tex, 1e3, "1000 tex"},
+     {"mtex", System::tex, 1e-3, "1/1000 tex"}}};
 
-const Hanks* hanks_named(std::string_view word) {
-  for (const Hanks& known : hank_words)
+const TradeUnit* unit_named(std::string_view word) {
+  for (const TradeUnit& known : trade_units)
     if (same_word(known.word, word)) return &known;
   return nullptr;
 }
@@ -247,15 +267,15 @@ class Reading {
       if (!same_word(word, "x") && role_ == Role::none && !slashed_.empty()) return {};  // 30/2 ply
     }
     if (same_word(word, "R") && role_ == Role::none) return role_ = Role::resultant, Status{};
-    if (const Hanks* hanks = hanks_named(word); hanks != nullptr && system_ == System::nm)
-      return hanks_ = hanks, Status{};
+    if (const TradeUnit* unit = unit_named(word); unit != nullptr && system_ == unit->system)
+      return unit_ = unit, Status{};
+    if (same_word(word, "Z") || (same_word(word, "S") && system_ != System::ne))
+      return wrong_count(text_, "twist has a statement of its own: twist 660 Z");
     if (const auto system = system_named(word)) {
       if (*system == system_) return {};
       return wrong_count(text_, fmt::format("{} is another system than {}", in_quotes(word),
                                             word_of(density_words, system_)));
     }
-    if (same_word(word, "Z") || same_word(word, "S"))
-      return wrong_count(text_, "twist has a statement of its own: twist 660 Z");
     if (!base_ && role_ == Role::none && is_title_of_count(word)) return {};
     return not_part(word);
   }
@@ -286,13 +306,17 @@ class Reading {
 
   Result<YarnCount> made(double single, double whole, double plies) const {
     YarnCount count;
+    if (unit_ != nullptr) {
+      single *= unit_->factor;
+      whole *= unit_->factor;
+    }
     if (!(plies <= 1e6)) return wrong_count(text_, "so many plies are no yarn");
     count.whole = {whole, system_};
     count.plies = static_cast<int>(plies);
     count.filaments = static_cast<int>(filaments_.value_or(0.0));
     if (count.plies > 1)
       count.understood = fmt::format("{} plies of {}", count.plies, with_system(single));
-    else if (filaments_ || range_ || hanks_ != nullptr)
+    else if (filaments_ || range_ || unit_ != nullptr)
       count.understood = with_system(whole);
     if (range_) count.understood += fmt::format(", the middle of a raw silk's range {}", *range_);
     if (filaments_)
@@ -300,9 +324,7 @@ class Reading {
           fmt::format(", {} {}{}", count.filaments, count.filaments == 1 ? "filament" : "filaments",
                       count.plies > 1 ? " each" : "");
     if (count.plies > 1) count.understood += fmt::format("; {} in all", with_system(whole));
-    if (hanks_ != nullptr)
-      count.understood +=
-          fmt::format(" ({} is the number of hanks of {} yards in a pound)", hanks_->word, hanks_->yards);
+    if (unit_ != nullptr) count.understood += fmt::format(" ({} is {})", unit_->word, unit_->is);
     return count;
   }
 
@@ -321,8 +343,6 @@ class Reading {
     const auto largest = std::max_element(slashed_.begin(), slashed_.end());
     if (largest != slashed_.end() && *largest > *base_) std::swap(*largest, *base_);
     double plies = product_of_plies();
-    constexpr double metres_a_yard = 0.9144, grams_a_pound = 453.59237;
-    if (hanks_ != nullptr) *base_ *= hanks_->yards * metres_a_yard / grams_a_pound;
     for (const double more : slashed_) {
       if (more != std::floor(more)) return needs_brackets();
       plies *= more;
@@ -378,7 +398,7 @@ class Reading {
   Role role_ = Role::none;
   std::optional<double> base_, filaments_, resultant_;
   std::optional<std::string> range_;
-  const Hanks* hanks_ = nullptr;
+  const TradeUnit* unit_ = nullptr;
   std::vector<double> slashed_, plies_;
   bool is_resultant_ = false, base_is_expression_ = false;
 };
@@ -399,6 +419,45 @@ bool is_count_notation(std::string_view text, const Scope& scope) {
   return lower(text.front()) == 'r' && text.find_first_of("0123456789") != std::string_view::npos;
 }
 
+std::optional<std::string> count_of_glass(std::string_view line) {
+  constexpr std::array<std::string_view, 4> metric = {"EC", "ECR", "SC", "CC"};
+  // D alone is denier.
+  constexpr std::array<std::string_view, 9> american = {"ECD", "ECDE", "ECG", "ECH", "ECK",
+                                                        "DE",  "G",    "H",   "K"};
+  std::size_t letters = 0;
+  while (letters < line.size() && is_letter(line[letters])) ++letters;
+  const std::string_view strand = line.substr(0, letters);
+  const auto is_strand = [&](std::string_view known) { return same_word(known, strand); };
+  const bool is_metric = std::ranges::any_of(metric, is_strand);
+  if (!is_metric && std::ranges::none_of(american, is_strand)) return std::nullopt;
+  std::string_view rest = line.substr(letters);
+  std::vector<double> numbers;
+  std::string signs;  // between them
+  while (!rest.empty()) {
+    double value = 0;
+    const auto [stop, failure] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (failure == std::errc{} && is_digit(rest.front())) {
+      numbers.push_back(value);
+      rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
+    } else {
+      if (rest.front() != ' ' && rest.front() != '-') signs += lower(rest.front());
+      rest.remove_prefix(1);
+    }
+  }
+  if (is_metric) {
+    if (numbers.size() == 2 && signs.empty()) return fmt::format("tex {}", numbers[1]);
+    if (numbers.size() == 3 && signs == "x") return fmt::format("tex {}x{}", numbers[1], numbers[2]);
+    return std::nullopt;
+  }
+  constexpr double tex_of_one = 1e3 * 453.59237 / (100 * 0.9144);
+  if (numbers.empty() || !(numbers[0] > 0)) return std::nullopt;
+  const std::string tex = fmt::format("tex {:.4g}", tex_of_one / numbers[0]);
+  if (numbers.size() == 1 && signs.empty()) return tex;
+  if (numbers.size() != 3 || signs != "/") return std::nullopt;
+  const double plies = std::max(1.0, numbers[1]) * std::max(1.0, numbers[2]);
+  return plies == 1 ? tex : fmt::format("{}x{}", tex, plies);
+}
+
 std::string_view system_of_count(std::string_view line) {
   if (const std::size_t blank = line.find_first_of(" \t"); is_title_of_count(line.substr(0, blank)))
     return blank < line.size() ? system_of_count(trimmed(line.substr(blank))) : std::string_view{};
@@ -414,7 +473,7 @@ std::string_view system_of_count(std::string_view line) {
     while (stop < line.size() && is_letter(line[stop])) ++stop;
     const std::string_view word = line.substr(i, stop - i);
     // A number of filaments alone, 12k, is no count: its reader says so.
-    const auto system = hanks_named(word) != nullptr                  ? System::nm
+    const auto system = unit_named(word) != nullptr                   ? unit_named(word)->system
                         : same_word(word, "k") && stop == line.size() ? System::tex
                                                                       : system_named(word);
     const bool is_glued =

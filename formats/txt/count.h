@@ -1,6 +1,7 @@
 // Yarn counts as the trades write them: `Ne 30/2`, `Nm 2/60`, `dtex 167 f48 x2`, `denier 20/22`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,11 @@ Result<YarnCount> read_yarn_count(std::string_view text, fabric::LinearDensity::
 bool is_count_notation(std::string_view text, const Scope& scope);
 
 inline constexpr int max_plies_of_count = 9;
+
+// The count that a glass yarn's designation says, as a text of this language: `tex 68x2` of `EC9 68x2`
+// (glass, continuous, 9 um; tex: ISO 2078), `tex 66.14x2` of `G75 1/2` (9 um; 7500 yards in a pound;
+// strands/plies). None: the line is no such designation.
+std::optional<std::string> count_of_glass(std::string_view line);
 
 // The system of a line that gives a count without its word in front: `1400x2 dtex`, `20 tex x 2`, `Ne30/2`,
 // `300D`; as in `density_words`. Empty: the line gives none.

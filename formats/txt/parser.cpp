@@ -9,6 +9,7 @@
 
 #include "core/words.h"
 #include "fabric/fibres.h"
+#include "formats/txt/count.h"
 
 namespace selvage::formats::txt {
 
@@ -155,6 +156,13 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
     skip_statement();
     return skip_step;
   }
+  if (block.table->word_of_line != nullptr)
+    if (const std::optional<std::string> count = count_of_glass(peek_rest())) {
+      error(statement(),
+            fmt::format("the designation of a glass yarn: write '{}' (and 'material glass')", *count));
+      skip_statement();
+      return skip_step;
+    }
   std::string what = fmt::format("unknown word {}", in_quotes(word));
   if (block.outer != nullptr) what += fmt::format(" in {}", block.title());
   if (block.table->has_rows) what += " where a row of numbers or 'end' is expected";

@@ -158,6 +158,7 @@ std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
 
 std::string_view near_draft_of_trade(std::string_view word) {
   std::vector<std::string_view> names;
+  names.reserve(draft_words.size() + 2 + group_names.size() + plain_names.size() + twill_names.size());
   for (const auto& draft : draft_words) names.push_back(draft.text);
   const std::size_t own = names.size();
   if (same_word(word, "sateen")) return "sateen 5";

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "formats/txt/blocks.h"
+#include "formats/txt/count.h"
 
 namespace selvage::formats::txt {
 

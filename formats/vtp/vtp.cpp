@@ -21,7 +21,7 @@ class Writer final : public BodyWriter {
   Writer(OutputFile& output, const SurfaceOptions& options) : output_(&output), options_(options) {}
 
   Status add_line(const yarn::Body& body) override {
-    const std::vector<LineSample> samples = yarn::line_samples(body, line_tolerance(options_, body));
+    const std::vector<LineSample>& samples = sampler_.sample(body, line_tolerance(options_, body));
     samples_.insert(samples_.end(), samples.begin(), samples.end());
     ends_.push_back(samples_.size());
     names_.push_back(body.name);
@@ -94,6 +94,7 @@ class Writer final : public BodyWriter {
 
   OutputFile* output_;
   SurfaceOptions options_;
+  yarn::LineSampler sampler_;
   std::vector<LineSample> samples_;  // of all yarns
   std::vector<std::size_t> ends_;    // behind each yarn's last one
   std::vector<std::string> names_;

@@ -235,7 +235,7 @@ class DeepMeasurer {
     };
     if (const auto found = find_critical(*fa, site_a, *fb, site_b); belongs(found))
       return Spot{*found, fa, fb};
-    if (const auto spot = crease_spot(*fa, site_a, *fb, site_b); spot && belongs(*spot)) return spot;
+    if (auto spot = crease_spot(*fa, site_a, *fb, site_b); spot && belongs(*spot)) return spot;
     return std::nullopt;
   }
 

@@ -22,13 +22,11 @@ std::string pattern_of(std::string_view text, bool has_numbers = false) {
     if (close != std::string_view::npos) {
       pattern += "''";
       i = close;
-    } else if (has_numbers) {
-      pattern += text[i];
-    } else if (is_digit(text[i])) {
+    } else if (!has_numbers && is_digit(text[i])) {
       const std::size_t end = std::min(text.find_first_not_of("0123456789.e+-", i), text.size());
       pattern += '#';
       i = end - 1;
-    } else if (text[i] != '-') {  // a minus
+    } else if (has_numbers || text[i] != '-') {  // a minus
       pattern += text[i];
     }
   }

@@ -166,6 +166,29 @@ Curve boundary_row(const Surface& surface, bool last) {
   return curve;
 }
 
+Curve row_at(const Surface& surface, double v) {
+  v = clamp_to(surface.knots_v, surface.degree_v, surface.count_v, v);
+  const int span = find_span(surface.knots_v, surface.degree_v, surface.count_v, v);
+  BasisRow values;
+  basis(surface.knots_v, surface.degree_v, span, v, values);
+  Curve curve;
+  curve.degree = surface.degree_u;
+  curve.knots = surface.knots_u;
+  for (int i = 0; i < surface.count_u; ++i) {
+    Vec3 sum = Vec3::Zero();
+    double total = 0.0;
+    for (int j = 0; j <= surface.degree_v; ++j) {
+      const int row = span - surface.degree_v + j;
+      const double share = values[at(j)] * surface.weight(i, row);
+      sum += share * surface.point(i, row);
+      total += share;
+    }
+    curve.points.emplace_back(surface.is_rational() ? Vec3(sum / total) : sum);
+    if (surface.is_rational()) curve.weights.push_back(total);
+  }
+  return curve;
+}
+
 Curve control_column(const Surface& surface, int i) {
   Curve curve;
   curve.degree = surface.degree_v;

@@ -77,6 +77,9 @@ std::vector<Vec3> evaluate_grid(const Surface& surface, const std::vector<double
 // Straight and even, from one place at t0 to another at t1.
 Curve segment(const Vec3& from, const Vec3& to, double t0 = 0, double t1 = 1);
 
+// The curve of constant v: its control points are those of the surface's columns at v.
+Curve row_at(const Surface& surface, double v);
+
 // Column i of the control points over v; the surface that has these columns, all over the same knots.
 Curve control_column(const Surface& surface, int i);
 Surface of_columns(int degree_u, const std::vector<double>& knots_u, const std::vector<Curve>& columns);

@@ -153,6 +153,8 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
       return fail(error(Kind::unsupported, fmt::format("this is {} ({}), which has no params to set",
                                                        (*format)->name, (*format)->title)));
     fabric = (*format)->read_with(*source, input.settings, diagnostics);
+  } else if ((*format)->read_within != nullptr && options.tolerance > 0) {
+    fabric = (*format)->read_within(*source, options.tolerance, diagnostics);
   } else if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
   } else if ((*format)->read_points != nullptr) {

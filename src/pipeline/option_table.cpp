@@ -191,8 +191,8 @@ void of_a_sweep(OptionTable& t) {
 void of_yarns(OptionTable& t) {
   t.begin("Yarns");
   t.option({convert, check, relax, mesh, info, view}, "--tolerance",
-           "of tubes, in the input's unit, instead of the input's own", Argument::positive(),
-           &Options::tolerance);
+           "of tubes, and of the surfaces of a TexGen model, in the input's unit, instead of the input's own",
+           Argument::positive(), &Options::tolerance);
   t.option(
       {roundtrip, diff}, "--tolerance",
       "distances up to this, in the first input's unit, are no difference (default: 0, every bit counts)",

@@ -8,6 +8,7 @@
 
 #include "nurbs/basis.h"
 #include "nurbs/measure.h"
+#include "yarn/ends.h"
 
 namespace selvage::yarn {
 
@@ -36,48 +37,28 @@ void divide(const nurbs::Curve& axis, double tolerance, double t0, double t1, in
   divide(axis, tolerance, middle, t1, halvings + 1, parameters);
 }
 
-// Of the section at one v.
-class SectionAt {
- public:
-  SectionAt(const nurbs::Surface& surface, double v) : surface_(surface), v_(v) {}
-
-  // The frame across the tangent, and the section's sizes.
-  void measure(LineSample& sample) {
-    const std::vector<double> knots = nurbs::breakpoints(surface_.knots_u, surface_.degree_u);
-    const Vec3 first = nurbs::evaluate(surface_, knots.front(), v_) - sample.position;
-    sample.side = first - first.dot(sample.tangent) * sample.tangent;
-    // A yarn may run to a point: any direction across does there.
-    sample.side = sample.side.squaredNorm() > 0.0 ? Vec3(sample.side.normalized())
-                                                  : Vec3(sample.tangent.unitOrthogonal());
-    sample.up = sample.tangent.cross(sample.side);
-    double area = 0.0;
-    for (std::size_t k = 1; k < knots.size(); ++k) area += span(knots[k - 1], knots[k], sample);
-    sample.radius = std::sqrt(std::abs(area) / std::numbers::pi);
-    sample.width = box_.sizes().x();
-    sample.height = box_.sizes().y();
-  }
-
- private:
-  // The area that a span sweeps as seen from the centre line (Green).
-  double span(double u0, double u1, const LineSample& sample) {
-    constexpr int extents = 8;
-    const auto flat = [&](const Vec3& p) { return Vec2(p.dot(sample.side), p.dot(sample.up)); };
-    for (int i = 0; i <= extents; ++i)
-      box_.extend(flat(nurbs::evaluate(surface_, u0 + (u1 - u0) * i / extents, v_) - sample.position));
-    const nurbs::GaussRule& rule = nurbs::gauss_rule(surface_.degree_u);
-    double sum = 0.0;
-    for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
-      const nurbs::SurfaceJet jet =
-          nurbs::evaluate_jet(surface_, 0.5 * (u0 + u1 + (u1 - u0) * rule.nodes[g]), v_);
-      sum += rule.weights[g] * (jet.position - sample.position).cross(jet.du).dot(sample.tangent);
-    }
-    return 0.25 * (u1 - u0) * sum;
-  }
-
-  const nurbs::Surface& surface_;
-  double v_;
-  Eigen::AlignedBox2d box_;
-};
+// The frame across the tangent, and the section's sizes.
+void measure(const nurbs::Curve& section, LineSample& sample) {
+  constexpr int extents = 8;
+  const Vec3 first = nurbs::evaluate(section, section.first_parameter()) - sample.position;
+  sample.side = first - first.dot(sample.tangent) * sample.tangent;
+  // A yarn may run to a point: any direction across does there.
+  sample.side = sample.side.squaredNorm() > 0.0 ? Vec3(sample.side.normalized())
+                                                : Vec3(sample.tangent.unitOrthogonal());
+  sample.up = sample.tangent.cross(sample.side);
+  sample.radius = std::sqrt(std::abs(area_vector(section).dot(sample.tangent)) / std::numbers::pi);
+  Eigen::AlignedBox2d box;
+  const auto extend = [&](double u) {
+    const Vec3 p = nurbs::evaluate(section, u) - sample.position;
+    box.extend(Vec2(p.dot(sample.side), p.dot(sample.up)));
+  };
+  const std::vector<double> knots = nurbs::breakpoints(section.knots, section.degree);
+  for (std::size_t k = 1; k < knots.size(); ++k)
+    for (int i = 0; i < extents; ++i) extend(std::lerp(knots[k - 1], knots[k], 1.0 * i / extents));
+  extend(knots.back());
+  sample.width = box.sizes().x();
+  sample.height = box.sizes().y();
+}
 
 }  // namespace
 
@@ -99,10 +80,27 @@ std::vector<LineSample> line_samples(const Body& body, double tolerance) {
     const double speed = sample.speed = jet.d1.norm();
     sample.tangent = jet.d1.normalized();
     if (speed > 0.0) sample.curvature = jet.d1.cross(jet.d2).norm() / (speed * speed * speed);
-    SectionAt(body.surface, t).measure(sample);
+    measure(nurbs::row_at(body.surface, t), sample);
     samples.push_back(sample);
   }
   return samples;
+}
+
+const std::vector<LineSample>& LineSampler::sample(const Body& body, double tolerance) {
+  constexpr std::size_t most_kept = 200'000;
+  const Vec3& start = body.axis.points.front();
+  const auto known = body.shape > 0 ? known_.find(body.shape) : known_.end();
+  if (known == known_.end()) {
+    samples_ = line_samples(body, tolerance);
+    if (body.shape > 0 && kept_ + samples_.size() <= most_kept) {
+      kept_ += samples_.size();
+      known_.try_emplace(body.shape, Known{start, samples_});
+    }
+    return samples_;
+  }
+  samples_ = known->second.samples;
+  for (LineSample& sample : samples_) sample.position += start - known->second.start;
+  return samples_;
 }
 
 }  // namespace selvage::yarn

@@ -1,6 +1,8 @@
 // A yarn's centre line as points: what formats of points carry of it.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <vector>
 
 #include "core/vec.h"
@@ -28,5 +30,22 @@ struct LineSample {
 // Body::surface at the same parameter: areas exact to rounding for polynomial surfaces, widths and heights
 // those of eight points between every two knots round the section.
 std::vector<LineSample> line_samples(const Body& body, double tolerance);
+
+// The samples of yarns one after the other, all of a shape (Body::shape) within the same tolerance: each
+// shape is sampled once, as long as there are not too many to keep.
+class LineSampler {
+ public:
+  // Good until the next call.
+  const std::vector<LineSample>& sample(const Body& body, double tolerance);
+
+ private:
+  struct Known {
+    Vec3 start;  // of the centre line
+    std::vector<LineSample> samples;
+  };
+  std::map<std::uint64_t, Known> known_;
+  std::size_t kept_ = 0;  // samples
+  std::vector<LineSample> samples_;
+};
 
 }  // namespace selvage::yarn

@@ -307,7 +307,8 @@ class Tg3(Case):
         )
 
     def test_measured_sections_are_fitted(self):
-        """Polygons whose corners stand at different places: less than half of the points, and the oracle's volume."""
+        """Polygons whose corners stand at different places: less than half of the points, and the oracle's volume. The
+        tolerance that the warning names gives about ten times the bytes."""
         sections = ""
         for k in range(24):
             turns = [2 * math.pi * (i + 0.3 * math.sin(7 * i + 3 * k)) / 40 for i in range(40)]
@@ -319,14 +320,25 @@ class Tg3(Case):
             )
         text = model(sections, attributes='type="CYarnSectionInterpPosition" Ramped="0" Polar="0"')
         path = self.file(text)
-        done = self.succeeds("info", "--json", path, "-v")
-        found = re.search(
-            r"fitted to within (\S+) mm of their sections, with (\d+) control points instead of (\d+)", done.stderr
-        )
+        done = self.succeeds("info", "--json", path)
+        fitted = r"fitted to within (\S+) mm of their sections, with (\d+) control points instead of (\d+)"
+        found = re.search(f"warning: the surfaces are {fitted}", done.stderr)
         self.assertLess(float(found[1]), 1e-3 * 0.8)
         self.assertLess(int(found[2]), int(found[3]) / 2)
         volume = json.loads(done.stdout)["inputs"][0]["yarns"][0]["volume"]
-        self.assertAlmostEqual(volume / Model(path).yarns[0].volume(), 1, delta=1e-3)
+        exact = Model(path).yarns[0].volume()
+        self.assertAlmostEqual(volume / exact, 1, delta=1e-3)
+        tolerance = re.search(r"; --tolerance (\S+) gives", done.stderr)[1]
+        iges = self.folder / "fitted.igs"
+        done = self.succeeds("convert", path, "--tolerance", tolerance, "-o", iges, "-v")
+        found = re.search(f"note: the surfaces are {fitted}", done.stderr)
+        self.assertLess(float(found[1]), float(tolerance))
+        self.assertNotIn("--tolerance", done.stderr)
+        self.assertLess(iges.stat().st_size, 12 * path.stat().st_size)
+        yarn = json.loads(self.succeeds("info", "--json", path, "--tolerance", tolerance).stdout)["inputs"][0]["yarns"][
+            0
+        ]
+        self.assertAlmostEqual(yarn["volume"] / exact, 1, delta=2 * float(tolerance) / 0.4)
 
     def test_bad_input(self):
         whole = model(ELLIPSE)

@@ -138,6 +138,7 @@ const std::vector<Case> number_cases = {
     {"comma",
      in_thread("tex 1,5"),
      {{3, 5, "a decimal comma in '1,5': the decimal mark is the point, write 1.5"}}},
+    {"thousands", in_thread("dtex 1,100"), {{3, 6, "write 1.100, or 1100 if thousands were meant"}}},
     {"comma_signed", in_material("expansion -1,5e-3 1"), {{3, 11, "write -1.5e-3"}}},
     {"commas", in_path("0,0,0\n1 0 0\n2 0 0"), {{7, 1, "separated by blanks"}}},
     {"semicolons", in_path("0;0;0\n1 0 0\n2 0 0"), {{7, 1, "not a number"}}},

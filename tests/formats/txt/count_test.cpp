@@ -1,5 +1,8 @@
 // Yarn counts as the trades write them, against values computed here.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <tuple>
 
 #include "formats/txt/reading.h"
 
@@ -92,6 +95,29 @@ TEST(YarnCount, LinenAndWorsted) {
   EXPECT_NE(messages_of("NeL 25").find("300 yards in a pound"), std::string::npos);
 }
 
+TEST(YarnCount, OtherUnits) {
+  EXPECT_NEAR(tex_of("ktex 4.8"), 4800, 1e-9);
+  EXPECT_NEAR(tex_of("0.3 ktex"), 300, 1e-9);
+  EXPECT_NEAR(tex_of("mtex 500x2"), 1, 1e-12);
+  EXPECT_NEAR(tex_of("YSW 12"), 453592.37 / (12 * 256 * 0.9144), 1e-6);
+  EXPECT_NEAR(tex_of("cc 20/2"), tex_of("Ne 20/2"), 1e-12);
+  EXPECT_NEAR(tex_of("metric 2/28"), 1000.0 / 14, 1e-12);
+}
+
+// ISO 2078, and the American system: hundreds of yards in a pound. The remedy is what makers print as the
+// tex.
+TEST(YarnCount, DesignationsOfGlass) {
+  for (const auto& [text, remedy, tex] :
+       {std::tuple("EC9 68", "tex 68", 68.0), std::tuple("EC 13 136 x2", "tex 136x2", 272.0),
+        std::tuple("G75 1/0", "tex 66.14", 66.14), std::tuple("ECG 75 1/2", "tex 66.14x2", 132.28),
+        std::tuple("ECD450 1/2", "tex 11.02x2", 22.04)}) {
+    EXPECT_NE(messages_of(text).find(fmt::format("write '{}'", remedy)), std::string::npos)
+        << messages_of(text);
+    EXPECT_NEAR(tex_of(remedy), tex, 1e-9) << remedy;
+  }
+  EXPECT_NE(messages_of("G string").find("unknown word"), std::string::npos);
+}
+
 // The border of the rule: 9 are plies, 10 are filaments.
 TEST(YarnCount, AboveNineAreFilaments) {
   EXPECT_NEAR(tex_of("dtex 100/9"), 90, 1e-9);
@@ -123,7 +149,8 @@ TEST(YarnCount, SaysWhatIsWrong) {
   EXPECT_NE(messages_of("dtex 167 48").find("joined"), std::string::npos);
   EXPECT_NE(messages_of("dtex 167 den").find("another system"), std::string::npos);
   EXPECT_NE(messages_of("dtex 167/").find("missing"), std::string::npos);
-  EXPECT_NE(messages_of("tex 20 Z 660").find("twist 660 Z"), std::string::npos);
+  for (const std::string text : {"tex 20 Z 660", "tex 20 S 660", "R 34 tex /2 S 600"})
+    EXPECT_NE(messages_of(text).find("twist 660 Z"), std::string::npos) << messages_of(text);
   EXPECT_NE(messages_of("tex 20\n1400x2 dtex").find("given twice"), std::string::npos);
 }
 

@@ -194,6 +194,7 @@ TEST(SurfaceTest, GridJetAndTensorProductAgree) {
           }
         EXPECT_LT((grid[j * us.size() + i] - sum / total).norm(), 1e-11);
         EXPECT_LT((evaluate_jet(surface, us[i], vs[j]).position - grid[j * us.size() + i]).norm(), 1e-13);
+        EXPECT_LT((evaluate(row_at(surface, vs[j]), us[i]) - grid[j * us.size() + i]).norm(), 1e-13);
       }
     const double h = 1e-5;
     const SurfaceJet jet = evaluate_jet(surface, 1.1, 2.2);
