@@ -454,7 +454,7 @@ Repeat WeaveConstruction::repeat() const {
   }
   if (pucker_) {
     wefts = std::lcm(wefts, static_cast<long long>(weave_.pucker->picks));
-    warps = std::lcm(warps, static_cast<long long>(pucker_->tight + pucker_->slack));
+    warps = std::lcm(warps, static_cast<long long>(pucker_->tight) + pucker_->slack);
   }
   if (wefts > longest_repeat || warps > longest_repeat) return {};
   wefts = std::lcm(wefts, weft_.repeat_of_threads());

@@ -286,6 +286,14 @@ end
         self.near(sheet["mass"], 800 * a_mm * (1 + braiders["crimp"]) + 1650 * 8 / 71.2, "mass")
         self.assertAlmostEqual(sheet["mass"], 536, delta=0.03 * 536)
         self.near(sheet["cover"], 1 - (1 - 3 * a_mm / 2) ** 2 * (1 - 4.4 * 8 / 71.2), "cover")
+        for angle in (25, 45, 70):
+            sheet = self.sheet_of(
+                text.replace("angle    60", f"angle {angle}").replace("ellipse 3 0.14", "ellipse 1 0.14")
+            )
+            self.near(sheet["braid_angle"], angle, "angle")
+            a_cm = 160 / (71.2 * math.cos(math.radians(angle)))
+            self.near(sheet["systems"]["braider"]["per_cm"], a_cm, f"braiders at {angle} degrees")
+            self.near(sheet["systems"]["axial"]["per_cm"], 80 / 71.2, f"axial yarns at {angle} degrees")
 
     def test_table(self):
         table = self.folder / "sheets.csv"
