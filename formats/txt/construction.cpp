@@ -36,6 +36,14 @@ std::optional<double> read_pitch(Parser& p) {
   const std::string_view word = p.peek_word();
   const bool is_number = word.empty() || !is_letter(word.front()) || p.scope().begins_with_param(word) ||
                          word.find('(') != std::string_view::npos;
+  for (const std::string_view sign : {"x", "@", "*", "\xC3\x97", "at"})
+    if (same_word(word, sign) && !p.scope().begins_with_param(word)) {
+      const std::string_view behind = trimmed(p.peek_rest().substr(word.size()));
+      p.error(p.here(), fmt::format("between the number and the pitch stands a blank alone: write '{}'",
+                                    readable(behind)));
+      p.take_rest();
+      return std::nullopt;
+    }
   if (!is_number || same_word(word, "pitch")) p.expect("pitch");
   const std::string_view text = without_open(p.peek_rest());
   const std::optional<std::string> own =
@@ -233,6 +241,10 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
       p.report.note(p.last(), fmt::format("draft {}: understood as {}", in_quotes(text), *understood));
     return;
   }
+  if (const std::string instead = instead_of_draft(text); !instead.empty()) {
+    p.error(p.here(), fmt::format("there is no draft {}: {}", in_quotes(text), instead));
+    return p.skip_statement();
+  }
   if (const std::string_view word = p.peek_word(), near = near_draft_of_trade(word); !near.empty()) {
     p.error(p.here(), same_word(near, word)
                           ? fmt::format("{} is a draft by itself: write '{}'", in_quotes(text), near)
@@ -338,6 +350,7 @@ void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
 }
 
 void read_loop(Parser& p, Knit& knit, std::string_view) {
+  if (same_word(p.peek_word(), "length")) p.take_word();
   const auto length = p.positive("the length of a loop", Measure::length);
   if (p.finish()) knit.loop = *length;
 }
@@ -345,6 +358,21 @@ void read_loop(Parser& p, Knit& knit, std::string_view) {
 // `stitch length L`.
 void read_stitch_length(Parser& p, Knit& knit, std::string_view word) {
   if (p.expect("length")) read_loop(p, knit, word);
+}
+
+// What to write for knits by other names; empty: they have none. `1x1 rib`, `stockinette`, `pique`.
+std::string instead_of_knit(std::string_view text) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.empty()) return {};
+  if (words.size() == 2 && same_word(words[1], "rib"))
+    return fmt::format("write 'rib {}'", words[0] == "1" ? "1x1" : words[0]);
+  for (const std::string_view jersey : {"stockinette", "stocking", "single-knit", "singleknit", "plain-knit"})
+    if (same_word(words[0], jersey)) return "write 'jersey'";
+  for (const std::string_view chart : {"pique", "lacoste", "fleece", "cardigan", "ponte", "cable", "lace",
+                                       "pointelle", "waffle", "terry", "tuck", "float", "miss"})
+    if (same_word(words[0], chart))
+      return "it is a chart of K, P, T and M behind 'knit' alone: see 'selvage explain chart'";
+  return {};
 }
 
 void read_knit_threads(Parser& p, Knit& knit, std::string_view) {
@@ -548,8 +576,20 @@ void read_carriers(Parser& p, BraidBlock& braid, std::string_view) {
   braid.carriers_place = p.last().place();
 }
 
+// The names of the three usual patterns.
+std::optional<std::array<int, 2>> pattern_named(std::string_view word) {
+  if (same_word(word, "diamond")) return std::array{1, 1};
+  if (same_word(word, "regular") || same_word(word, "standard")) return std::array{2, 2};
+  if (same_word(word, "hercules")) return std::array{3, 3};
+  return std::nullopt;
+}
+
 void read_pattern(Parser& p, BraidBlock& braid, std::string_view) {
-  const auto numbers = p.pair("the pattern", '/');
+  std::optional<std::array<int, 2>> numbers = pattern_named(p.peek_word());
+  if (numbers)
+    p.take_word();
+  else
+    numbers = p.pair("the pattern", '/');
   if (!p.finish()) return;
   braid.over = (*numbers)[0];
   braid.under = (*numbers)[1];
@@ -608,7 +648,18 @@ void read_level(Parser& p, BraidBlock& braid, std::string_view word) {
   if (p.finish()) braid.width = *value;
 }
 
+// `+-45`, `45°`: the number alone.
+std::string_view plain_angle(std::string_view text) {
+  for (const std::string_view sign : {"\xC2\xB1", "+-", "+/-"})
+    if (text.starts_with(sign)) text = trimmed(text.substr(sign.size()));
+  constexpr std::string_view degree = "\xC2\xB0";
+  return trimmed(text.ends_with(degree) ? text.substr(0, text.size() - degree.size()) : text);
+}
+
 void read_angle(Parser& p, BraidBlock& braid, std::string_view) {
+  if (const std::string_view text = p.peek_rest(), plain = plain_angle(text); plain != text && !plain.empty())
+    return p.error(p.here(), fmt::format("the angle is a number of degrees, of both directions: write '{}'",
+                                         readable(plain)));
   const auto value = p.number("the angle", Measure::angle);
   if (value && !(*value > 0.0 && *value < 90.0))
     p.error(p.last(), "the angle between yarn and axis lies between 0 and 90 degrees, both excluded");
@@ -713,6 +764,11 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
         "a spacer is not built as one; two faces with yarns between them are a chart of K, P, T and U with "
         "'gating opposite D', D their distance: see 'selvage explain gating'",
         Kind::unsupported);
+    p.take_bytes(p.peek_rest().size());
+    return p.skip_statement();
+  }
+  if (const std::string instead = instead_of_knit(p.peek_rest()); !instead.empty()) {
+    p.error(p.here(), fmt::format("there is no knit {}: {}", in_quotes(p.peek_rest()), instead));
     p.take_bytes(p.peek_rest().size());
     return p.skip_statement();
   }

@@ -73,13 +73,6 @@ const TradeUnit* unit_named(std::string_view word) {
   return nullptr;
 }
 
-// What may stand in front of a count: the sign Tt of linear density, and its names.
-bool is_title_of_count(std::string_view word) {
-  for (const std::string_view title : {"Tt", "count", "titre", "titer"})
-    if (same_word(word, title)) return true;
-  return false;
-}
-
 bool is_indirect(System system) {
   return system == System::nm || system == System::ne;
 }
@@ -281,6 +274,9 @@ class Reading {
   }
 
   [[nodiscard]] Message not_part(std::string_view token) const {
+    for (const std::string_view own : {"twist", "density", "packing", "diameter", "section", "material"})
+      if (same_word(token, own))
+        return wrong_count(text_, fmt::format("{} begins a line of its own", in_quotes(token)));
     const bool is_comment = text_.find(';') != std::string_view::npos ||
                             text_.find("--") != std::string_view::npos ||
                             text_.find("/*") != std::string_view::npos;
@@ -404,6 +400,12 @@ class Reading {
 };
 
 }  // namespace
+
+bool is_title_of_count(std::string_view word) {
+  for (const std::string_view title : {"Tt", "count", "titre", "titer"})
+    if (same_word(word, title)) return true;
+  return false;
+}
 
 Result<YarnCount> read_yarn_count(std::string_view text, System system, Scope& scope) {
   return Reading(text, system, scope).read();

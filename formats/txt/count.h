@@ -27,6 +27,9 @@ struct YarnCount {
 // system's word within. Errors (malformed): what is wrong, and how to write it.
 Result<YarnCount> read_yarn_count(std::string_view text, fabric::LinearDensity::Measure system, Scope& scope);
 
+// May the word stand in front of a count: the sign Tt of linear density, and its names?
+bool is_title_of_count(std::string_view word);
+
 // Is it more than a number, a param or what is wrong with one?
 bool is_count_notation(std::string_view text, const Scope& scope);
 

@@ -367,14 +367,17 @@ std::nullopt_t Cursor::explain_number(std::string_view what) {
   std::replace(pointed.begin(), pointed.end(), ',', '.');
   std::string reason;
   const auto behind = word.size() - std::min(word.size(), word.rfind(',') + 1);
-  if (commas == 1 && is_number(pointed)) {
+  if (commas == 1 && word.back() != ',' && is_number(pointed)) {
     reason = fmt::format("a decimal comma in {}: the decimal mark is the point, write {}", in_quotes(word),
                          pointed);
     if (behind == 3 && word.front() != '0') {
       std::erase(pointed, '.');
       reason += fmt::format(", or {} if thousands were meant", pointed);
     }
-  } else if (commas > 0)
+  } else if (commas == 1 && word.back() == ',' && is_number(word.substr(0, word.size() - 1)))
+    reason = fmt::format("a comma behind the number: values are separated by blanks, write {}",
+                         word.substr(0, word.size() - 1));
+  else if (commas > 0)
     reason = fmt::format("commas in {}: values are separated by blanks, the decimal mark is the point",
                          in_quotes(word));
   else if (is_not_finite_word(word))

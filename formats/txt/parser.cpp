@@ -10,6 +10,7 @@
 #include "core/words.h"
 #include "fabric/fibres.h"
 #include "formats/txt/count.h"
+#include "formats/txt/slip.h"
 
 namespace selvage::formats::txt {
 
@@ -22,7 +23,9 @@ int find_word(const std::vector<std::string_view>& words, std::string_view word)
 }
 
 // Words of the trades for what a statement is called here.
-constexpr std::array<Word<std::string_view>, 10> trade_words{{{"ends", "warp"},
+constexpr std::array<Word<std::string_view>, 12> trade_words{{{"ends", "warp"},
+                                                              {"lapping", "bar"},
+                                                              {"draft", "pattern"},
                                                               {"picks", "weft"},
                                                               {"filling", "fill"},
                                                               {"woof", "weft"},
@@ -38,6 +41,16 @@ std::string_view meant_word(std::string_view word, const std::vector<std::string
   for (const auto& trade : trade_words)
     if (same_word(trade.text, word) && find_word(known, trade.value) >= 0) return trade.value;
   return near_word(word, known);
+}
+
+// Numbers that are joined by another sign: what to write.
+std::string joined_by(std::string_view word, char sign) {
+  std::string now(word);
+  for (char& c : now)
+    if (std::string_view("/:-x*\\").find(lower(c)) != std::string_view::npos) c = sign;
+  const bool is_cured = now != word && now.front() != sign && now.back() != sign &&
+                        now.find_first_not_of(std::string("0123456789") + sign) == std::string::npos;
+  return is_cured ? fmt::format(": write '{}'", now) : std::string();
 }
 
 }  // namespace
@@ -132,6 +145,18 @@ int Parser::note_given(Block& block, int index, std::string_view word) {
 }
 
 int Parser::unknown_word(const Block& block, std::string_view word) {
+  const bool is_text = text_prefix(peek_rest()) == peek_rest().size();
+  if (const std::optional<std::string> line =
+          is_text ? meant_line(block.kind, peek_rest(), block.table->words) : std::nullopt) {
+    error(statement(), fmt::format("{} is no line of {}: write '{}'", in_quotes(peek_rest()),
+                                   block.outer != nullptr ? block.title() : "a fabric", *line));
+    skip_statement();
+    return skip_step;
+  }
+  if (block.outer != nullptr && closes_elsewhere(block.kind, word)) {
+    error(statement(), fmt::format("{} is closed by the word 'end': write 'end'", block.title()));
+    return end_step;
+  }
   for (const Block* outer = block.outer; outer != nullptr; outer = outer->outer)
     if (find_word(outer->table->words, word) >= 0) return missing_end_step;
   if (text_prefix(word) != word.size()) {
@@ -156,13 +181,14 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
     skip_statement();
     return skip_step;
   }
-  if (block.table->word_of_line != nullptr)
-    if (const std::optional<std::string> count = count_of_glass(peek_rest())) {
-      error(statement(),
-            fmt::format("the designation of a glass yarn: write '{}' (and 'material glass')", *count));
-      skip_statement();
-      return skip_step;
-    }
+  if (block.table->word_of_line != nullptr && is_title_of_count(word)) {
+    const std::string number = readable(trimmed(peek_rest().substr(word.size())));
+    error(statement(), fmt::format("a yarn count says its system: write 'Ne {0}', or 'Nm {0}', 'tex {0}', "
+                                   "'dtex {0}' or 'denier {0}', whichever it is",
+                                   number));
+    skip_statement();
+    return skip_step;
+  }
   std::string what = fmt::format("unknown word {}", in_quotes(word));
   if (block.outer != nullptr) what += fmt::format(" in {}", block.title());
   if (block.table->has_rows) what += " where a row of numbers or 'end' is expected";
@@ -287,8 +313,8 @@ std::optional<std::vector<int>> Parser::counts(std::string_view what, char sign)
     int value = 0;
     const auto [stop, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (failure != std::errc{} || stop != part.data() + part.size() || value < 1 || values.size() == most)
-      return fail(spot, fmt::format("{}: whole numbers joined by '{}' are expected, as in 2{}1, found {}",
-                                    what, sign, sign, in_quotes(word)));
+      return fail(spot, fmt::format("{}: whole numbers joined by '{}' are expected, as in 2{}1, found {}{}",
+                                    what, sign, sign, in_quotes(word), joined_by(word, sign)));
     values.push_back(value);
   }
   return values;
@@ -311,8 +337,8 @@ std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign)
   if (good) return values;
   if (word.empty())
     return fail(spot, fmt::format("{} is missing: two whole numbers, as in 2{}1", what, sign));
-  return fail(spot, fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}",
-                                what, sign, sign, in_quotes(word)));
+  return fail(spot, fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}{}",
+                                what, sign, sign, in_quotes(word), joined_by(word, sign)));
 }
 
 // --- names
@@ -329,6 +355,19 @@ std::optional<std::string_view> Parser::new_name(Names& names) {
 }
 
 std::optional<std::string_view> Parser::reference(const Names& names) {
+  // 8 24/cm
+  if (const std::string_view rest = peek_rest(); !has_failed() && !rest.empty() && rest.front() >= '0' &&
+                                                 rest.front() <= '9' && names.lines.size() == 1) {
+    const std::string_view known = names.lines.begin()->first;
+    const std::vector<std::string_view> words = words_of(rest);
+    const bool is_behind = words.size() > 1 && words[1] == known;
+    const std::string text(is_behind ? rest.substr(static_cast<std::size_t>(words[1].data() - rest.data()))
+                                     : rest);
+    return fail(here(), is_behind
+                            ? fmt::format("the {}'s name stands here: write '{}'", names.kind, readable(text))
+                            : fmt::format("the {}'s name is missing: write '{} {}'", names.kind, known,
+                                          readable(text)));
+  }
   const std::optional<std::string_view> found = name(fmt::format("the {}'s name", names.kind));
   if (found && !names.lines.contains(*found)) references_.push_back({&names, *found, last()});
   return found;

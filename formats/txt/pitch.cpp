@@ -14,12 +14,13 @@ namespace {
 
 constexpr std::array<std::string_view, 6> lengths = {"mm", "cm", "dm", "m", "in", "inch"};
 constexpr std::string_view inch_sign = "\"";
-constexpr std::array<std::string_view, 14> nouns = {"ends",   "end",      "picks", "pick",   "threads",
-                                                    "thread", "yarns",    "wales", "wale",   "courses",
-                                                    "course", "stitches", "st",    "needles"};
+constexpr std::array<std::string_view, 24> nouns = {
+    "ends", "end",     "picks",  "pick",     "threads", "thread",  "yarns", "wales",
+    "wale", "courses", "course", "stitches", "st",      "needles", "thr",   "thrs",
+    "thds", "th",      "fd",     "fils",     "fil",     "yarn",    "e",     "p"};
 // By their last letter: i an inch, c a centimetre.
-constexpr std::array<std::string_view, 12> short_forms = {"epi", "ppi", "wpi",  "cpi",  "tpi",  "epc",
-                                                          "ppc", "wpc", "epcm", "ppcm", "cpcm", "wpcm"};
+constexpr std::array<std::string_view, 13> short_forms = {"epi", "ppi", "wpi",  "cpi",  "tpi",  "epc", "ppc",
+                                                          "wpc", "cpc", "epcm", "ppcm", "cpcm", "wpcm"};
 
 bool is_one_of(std::string_view word, const auto& words) {
   return std::any_of(words.begin(), words.end(),
@@ -65,6 +66,8 @@ std::optional<std::string> pitch_in_own_form(std::string_view text) {
   if (is_one_of(word, short_forms) && trimmed(rest).empty())
     return value + (lower(word[2]) == 'i' ? "/in" : "/cm");
   if (is_one_of(word, lengths) && trimmed(rest).empty() && !is_glued) return value + std::string(word);
+  for (const std::string_view inverse : {"-1", "^-1", "\xE2\x81\xBB\xC2\xB9"})  // 24 cm-1
+    if (is_one_of(word, lengths) && rest == inverse) return value + "/" + std::string(word);
   const bool has_noun = is_one_of(word, nouns);
   if (has_noun) word = taken_word(rest);
   if (word.empty() && trimmed(rest).starts_with("/")) {

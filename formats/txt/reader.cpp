@@ -27,8 +27,36 @@ void read_repeated_version(Parser& p, Fabric&, std::string_view) {
   p.error(p.statement(), "'fabric' is the first statement of a file, and its only one of this name");
 }
 
+// Written in full, in either spelling and number.
+std::optional<Unit> unit_by_name(std::string_view word) {
+  constexpr std::array<std::pair<std::string_view, Unit>, 15> names = {{{"millimetre", Unit::mm},
+                                                                        {"millimeter", Unit::mm},
+                                                                        {"centimetre", Unit::cm},
+                                                                        {"centimeter", Unit::cm},
+                                                                        {"metre", Unit::m},
+                                                                        {"meter", Unit::m},
+                                                                        {"micrometre", Unit::um},
+                                                                        {"micrometer", Unit::um},
+                                                                        {"micron", Unit::um},
+                                                                        {"\xC2\xB5m", Unit::um},
+                                                                        {"\xCE\xBCm", Unit::um},
+                                                                        {"in", Unit::inch},
+                                                                        {"inche", Unit::inch},
+                                                                        {"zoll", Unit::inch},
+                                                                        {"\"", Unit::inch}}};
+  std::string_view one = word;
+  if (one.size() > 2 && lower(one.back()) == 's') one.remove_suffix(1);
+  for (const auto& [name, unit] : names)
+    if (same_word(name, one)) return unit;
+  return std::nullopt;
+}
+
 void read_units(Parser& p, Fabric& fabric, std::string_view) {
-  const auto units = p.choice("unit", unit_words);
+  std::optional<Unit> units = unit_by_name(p.peek_word());
+  if (units)
+    p.take_word();
+  else
+    units = p.choice("unit", unit_words);
   if (!p.finish()) return;
   if (!p.scope().set_unit(*units))
     return p.error(p.statement(),

@@ -173,6 +173,21 @@ void read_thread_material(Parser& p, Thread& thread, std::string_view) {
       if (p.finish()) thread.material = fibre->name;
       return;
     }
+  if (rest.find_first_of("%/") != std::string::npos && rest.find('"') == std::string::npos) {
+    const std::string_view all = "100%";
+    if (const Material* fibre =
+            rest.starts_with(all) ? fabric::find_fibre(trimmed(rest.substr(all.size()))) : nullptr) {
+      p.take_rest();
+      if (p.finish()) thread.material = fibre->name;
+      return;
+    }
+    p.error(p.here(),
+            fmt::format("{} is no material: of a blend write the density, as in 'density 1.46', and for its "
+                        "elasticity a block 'material NAME'",
+                        in_quotes(rest)));
+    p.take_rest();
+    return;
+  }
   const auto name = p.reference(p.materials);
   if (p.finish()) thread.material = *name;
 }

@@ -64,23 +64,63 @@ std::string make_twill(Draft& draft, int over, int under, Hand hand) {
   return fmt::format("twill {}/{} {}", over, under, word_of(hand_words, hand));
 }
 
-// `5HS`, `8-harness`.
+bool is_any_of(std::string_view word, std::span<const std::string_view> names) {
+  return std::any_of(names.begin(), names.end(), [&](auto name) { return same_word(word, name); });
+}
+
+// `5HS`, `8-harness`, `8 shaft`.
 std::optional<int> harness_satin(std::string_view word) {
   int shafts = 0;
   const auto [stop, failure] = std::from_chars(word.data(), word.data() + word.size(), shafts);
   if (failure != std::errc{}) return std::nullopt;
   std::string_view name(stop, static_cast<std::size_t>(word.data() + word.size() - stop));
-  if (name.starts_with("-")) name.remove_prefix(1);
-  const bool is_satin = same_word(name, "HS") || same_word(name, "harness") || same_word(name, "H");
+  if (name.starts_with("-") || name.starts_with(" ")) name.remove_prefix(1);
+  constexpr std::array<std::string_view, 6> names = {"HS", "harness", "H", "shaft", "end", "heald"};
+  const bool is_satin = is_any_of(name, names);
   return is_satin && shafts >= 4 && shafts <= 100 ? std::optional(shafts) : std::nullopt;
+}
+
+std::string make_satin(Draft& draft, int shafts) {
+  draft.form = Form::satin;
+  draft.a = shafts;
+  draft.b = 0;
+  return fmt::format("satin {} (weft-faced, as `satin` is without a word)", shafts);
+}
+
+// The direction of a twill's lines: a right-hand twill runs up to the right, as the stroke of a Z.
+std::optional<Hand> hand_named(std::string_view word) {
+  for (const auto& hand : hand_words)
+    if (same_word(word, hand.text)) return hand.value;
+  for (const std::string_view right : {"right", "right-hand", "rh", "rht"})
+    if (same_word(word, right)) return Hand::z;
+  for (const std::string_view left : {"left", "left-hand", "lh", "lht"})
+    if (same_word(word, left)) return Hand::s;
+  return std::nullopt;
+}
+
+// `twill 3/1 left`, `3/1 S`, `left-hand twill 2/1`; `twill 3/1 Z` is the language's own.
+std::optional<std::string> twill_with_hand(const std::vector<std::string_view>& words, Draft& draft) {
+  const bool is_own = words.size() == 3 && same_word(words[0], "twill") && words[2].size() == 1;
+  if (is_own) return std::nullopt;
+  std::optional<Hand> hand;
+  std::optional<std::array<int, 2>> numbers;
+  bool has_name = false;
+  for (const std::string_view word : words) {
+    if (same_word(word, "twill") && !has_name)
+      has_name = true;
+    else if (const auto found = hand_named(word); found && !hand)
+      hand = found;
+    else if (const auto pair = pair_of(word, '/'); pair && !numbers)
+      numbers = pair;
+    else
+      return std::nullopt;
+  }
+  if (!hand || !numbers) return std::nullopt;
+  return make_twill(draft, (*numbers)[0], (*numbers)[1], *hand);
 }
 
 std::string groups_text(const std::array<int, 2>& pair) {
   return fmt::format("{} ends x {} picks as one", pair[0], pair[1]);
-}
-
-bool is_any_of(std::string_view word, std::span<const std::string_view> names) {
-  return std::any_of(names.begin(), names.end(), [&](auto name) { return same_word(word, name); });
 }
 
 // `drill 2/1`, `3/1 denim`, `oxford 2x1`, `matt 3/3`, `sateen 5`: a name, and the numbers that it may have.
@@ -110,7 +150,14 @@ std::optional<std::string> named_with_numbers(std::string_view first, std::strin
 }  // namespace
 
 std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
-  const std::vector<std::string_view> words = words_of(text);
+  std::vector<std::string_view> words = words_of(text);
+  if (words.size() > 1 && same_word(words.back(), "weave")) words.pop_back();
+  if (auto understood = twill_with_hand(words, draft)) return understood;
+  // `8 harness satin`, `8 shaft`.
+  if (words.size() > 1)
+    if (const auto shafts = harness_satin(fmt::format("{} {}", words[0], words[1]));
+        shafts && (words.size() == 2 || (words.size() == 3 && same_word(words[2], "satin"))))
+      return make_satin(draft, *shafts);
   if (words.empty() || words.size() > 2) return std::nullopt;
   const std::string_view first = words.front(), last = words.back();
   const auto is = [](std::string_view word, std::string_view name) { return same_word(word, name); };
@@ -147,13 +194,35 @@ std::optional<std::string> draft_of_trade(std::string_view text, Draft& draft) {
     }
   // `5HS`, `5HS satin`, `crowfoot`.
   const auto shafts = is(first, "crowfoot") ? std::optional(4) : harness_satin(first);
-  if (shafts && (words.size() == 1 || is(last, "satin"))) {
-    draft.form = Form::satin;
-    draft.a = *shafts;
-    draft.b = 0;
-    return fmt::format("satin {} (weft-faced, as `satin` is without a word)", *shafts);
-  }
+  if (shafts && (words.size() == 1 || is(last, "satin"))) return make_satin(draft, *shafts);
   return std::nullopt;
+}
+
+std::string instead_of_draft(std::string_view text) {
+  struct Name {
+    std::string_view name, draft;
+  };
+  // The weave that each cloth commonly has.
+  constexpr std::array<Name, 8> names = {{{"gauze", "leno"},
+                                          {"leinwand", "plain"},
+                                          {"linen", "plain"},
+                                          {"gabardine", "twill 2/2"},
+                                          {"broken", "satin 4"},
+                                          {"repp", "plain"},
+                                          {"rep", "plain"},
+                                          {"rib", "basket 1x2"}}};
+  constexpr std::array<std::string_view, 14> own = {
+      "herringbone", "chevron", "honeycomb", "waffle",  "crepe",    "bedford",  "dobby",
+      "jacquard",    "huck",    "diamond",   "pointed", "whipcord", "barathea", "moss"};
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.empty()) return {};
+  for (const Name& known : names)
+    if (same_word(known.name, words.front())) return fmt::format("write '{}'", known.draft);
+  if (is_any_of(words.front(), own))
+    return "its rows of 0 and 1 stand below 'draft', and 'end' behind them, or in a file: `draft file NAME`; "
+           "see "
+           "'selvage explain draft'";
+  return {};
 }
 
 std::string_view near_draft_of_trade(std::string_view word) {

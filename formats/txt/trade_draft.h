@@ -17,4 +17,7 @@ std::optional<std::string> draft_of_trade(std::string_view text, fabric::Draft& 
 // The trade's name, or the one that is meant by a word that is none of `draft`'s own; empty: there is none.
 std::string_view near_draft_of_trade(std::string_view word);
 
+// What to write for the name of a draft that has none here; empty: nothing is known. "write 'leno'".
+std::string instead_of_draft(std::string_view text);
+
 }  // namespace selvage::formats::txt

@@ -434,7 +434,7 @@ const std::vector<Case> construction_cases = {
     {"draft_sign", weave("draft\n10\n02\nend"), {{10, 2, "signs 0 and 1"}}},
     {"draft_width", weave("draft\n10\n011\nend"), {{10, 1, "3 signs, the first one has 2"}}},
     {"draft_empty", weave("draft\nend"), {{9, 1, "no rows"}}},
-    {"draft_unknown", weave("draft herringbone"), {{8, 9, "unknown draft"}}},
+    {"draft_unknown", weave("draft spiral"), {{8, 9, "unknown draft"}}},
     {"draft_twill", weave("draft twill 2"), {{8, 15, "joined by '/'"}}},
     {"draft_twill_zero", weave("draft twill 0/2"), {{8, 15, "joined by '/'"}}},
     {"draft_satin", weave("draft satin 6/2"), {{8, 15, "does not exist"}}},

@@ -21,6 +21,14 @@ const std::string knit =
     "18/cm\n"
     "  wales 4 13/cm\nend\n";
 
+const std::string tube_braid =
+    "fabric 1\nthread tow\n  tex 800\n  density 1.8\n  section ellipse 3 0.14\nend\nbraid\n  thread tow\n"
+    "  carriers 16\n  pattern 2/2\n  radius 12\n  angle 45\n  length 60\nend\n";
+
+const std::string warp_knit =
+    "fabric 1\nthread a\n  dtex 44 f13\n  material polyamide\nend\nwarpknit\n  courses 4 20/cm\n"
+    "  wales 4 11/cm\n  bar a 1-0/1-2\nend\n";
+
 struct Slip {
   std::string right, wrong;  // of one line, or several
 };
@@ -75,6 +83,8 @@ std::string remedied(const std::string& text, const Message& message) {
   if (std::regex_search(said, found, std::regex("write '([^']*)'"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("needs brackets: (\\(.*\\))"))) return rest_of_line(found[1]);
   if (std::regex_search(said, found, std::regex("decimal mark is the point, write ([0-9.]+)")))
+    return token(found[1]);
+  if (std::regex_search(said, found, std::regex("separated by blanks, write ([0-9.]+)")))
     return token(found[1]);
   if (std::regex_search(said, found, std::regex("as in ([0-9]+ [0-9]+ [0-9]+)")))
     return rest_of_line(found[1]);
@@ -177,7 +187,20 @@ TEST(Slips, AreUnderstood) {
                                    {"  material cotton", "  material E glass"},
                                    {"  material cotton", "  material PA 6.6"},
                                    {"  material cotton", "  material nylon 6"},
-                                   {warp, "warp cotton 8 24 open"}};
+                                   {warp, "warp cotton 8 24 open"},
+                                   {warp, "warp cotton 8 24 thr/cm"},
+                                   {warp, "warp cotton 8 24 Fd/cm"},
+                                   {warp, "warp cotton 8 24 cm-1"},
+                                   {warp, "warp cotton 8 24cm^-1"},
+                                   {draft, "draft oxford weave"},
+                                   {draft, "draft 8 harness satin"},
+                                   {draft, "draft 5 shaft"},
+                                   {draft, "draft twill 3/1 left"},
+                                   {draft, "draft right-hand twill 2/1"},
+                                   {draft, "draft 3/1 S"},
+                                   {"  material cotton", "  material 100% cotton"},
+                                   {"title", "units millimeters\ntitle"},
+                                   {"title", "units inches\ntitle"}};
   for (const Slip& slip : slips) {
     const std::optional<Message> error = first_error(with(cloth, slip));
     EXPECT_FALSE(error) << slip.wrong << "\n" << (error ? to_string(*error) : std::string());
@@ -186,6 +209,8 @@ TEST(Slips, AreUnderstood) {
                                             {"knit jersey", "knit single-jersey"},
                                             {"wales 4 13/cm", "wales 4 33 wpi"},
                                             {"courses 4 18/cm", "courses 4 46 cpi"},
+                                            {"wales 4 13/cm", "wales 4 13 wpc"},
+                                            {"wales 4 13/cm", "wales 4 13/cm\n  loop length 2.8 mm"},
                                             {"wales 4 13/cm", "wales 4 13/cm\n  stitch length 2.8"}}) {
     const std::optional<Message> error = first_error(with(knit, slip));
     EXPECT_FALSE(error) << slip.wrong << "\n" << (error ? to_string(*error) : std::string());
@@ -224,7 +249,6 @@ TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
                                    {"material cotton", "material polyster"},
                                    {draft, "draft plian"},
                                    {draft, "draft oxfrod"},
-                                   {draft, "draft oxford weave"},
                                    {draft, "draft satin"},
                                    {draft, "draft basket"},
                                    {warp, "warp 8 cotton 24/cm"},
@@ -254,13 +278,68 @@ TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
                                    {"weave\n", "weve\n"},
                                    {"title", "titel"},
                                    {"title", "units milimeter\ntitle"},
-                                   {"thread cotton", "thred cotton"}};
+                                   {"thread cotton", "thred cotton"},
+                                   {warp, "warp cotton 8 x 24/cm"},
+                                   {warp, "warp cotton 8 @ 24/cm"},
+                                   {warp, "warp cotton 8, 24/cm"},
+                                   {warp, "warp 8 24/cm"},
+                                   {draft, "weave plain"},
+                                   {draft, "plain"},
+                                   {draft, "twill 2/1"},
+                                   {draft, "draft leinwand"},
+                                   {draft, "draft broken twill"},
+                                   {draft, "draft repp"},
+                                   {draft, "draft twill 2-1"},
+                                   {draft, "draft basket 2*2"},
+                                   {"end\nweave", "}\nweave"},
+                                   {"end\nweave", "endthread\nweave"},
+                                   {"end\nweave", "end-thread\nweave"},
+                                   {count, "EC9 68"},
+                                   {count, "G150 1/0"},
+                                   {count, "Ne 20\n  1 filaments"}};
   for (const Slip& slip : slips) expect_cured(with(cloth, slip));
   for (const Slip& slip : std::vector<Slip>{{"knit jersey", "knit jersy"},
                                             {"wales 4 13/cm", "wales 13/cm"},
                                             {"courses 4 18/cm", "courses 18/cm 4"},
+                                            {"courses 4 18/cm", "cpc 18"},
+                                            {"wales 4 13/cm", "wpi 33"},
+                                            {"knit jersey", "knit stockinette"},
+                                            {"knit jersey", "knit 1x1 rib"},
                                             {"courses", "cources"}})
     expect_cured(with(knit, slip));
+  for (const Slip& slip : std::vector<Slip>{{"warpknit", "warp knit"},
+                                            {"bar a", "GB1 a"},
+                                            {"bar a", "gb a"},
+                                            {"bar a", "bar 1 a"},
+                                            {"bar a", "lapping a"},
+                                            {"bar a", "bar"}})
+    expect_cured(with(warp_knit, slip));
+  expect_cured(with(knit, {"knit jersey", "jersey"}));
+  expect_cured(with(tube_braid, {"pattern 2/2", "draft 2/2"}));
+  expect_cured(with(cloth, {count, "count 20"}));
+  for (const Slip& slip : std::vector<Slip>{{"carriers 16", "16 carriers"},
+                                            {"radius 12", "diameter 24"},
+                                            {"radius 12", "diameter 24 mm"},
+                                            {"pattern 2/2", "pattern 2x2"},
+                                            {"angle 45", "angle +-45"},
+                                            {"angle 45", "angle 45\xC2\xB0"},
+                                            {"angle 45",
+                                             "\xC2\xB1"
+                                             "45"},
+                                            {"angle 45", "braid angle 45"}})
+    expect_cured(with(tube_braid, slip));
+}
+
+TEST(Slips, PatternsOfBraidsHaveNames) {
+  for (const auto& [name, numbers] :
+       {std::pair("diamond", "1/1"), std::pair("regular", "2/2"), std::pair("hercules", "3/3")}) {
+    const Reading named = read(with(tube_braid, {"2/2", name})),
+                  plain = read(with(tube_braid, {"2/2", numbers}));
+    ASSERT_TRUE(named.fabric && plain.fabric) << named.text();
+    const auto& a = std::get<fabric::Braid>(named.fabric->items.at(0));
+    const auto& b = std::get<fabric::Braid>(plain.fabric->items.at(0));
+    EXPECT_TRUE(a.over == b.over && a.under == b.under) << name;
+  }
 }
 
 // A spacer is named as what it is, and its block is one error.
