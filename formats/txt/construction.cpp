@@ -578,9 +578,13 @@ void read_carriers(Parser& p, BraidBlock& braid, std::string_view) {
 
 // The names of the three usual patterns.
 std::optional<std::array<int, 2>> pattern_named(std::string_view word) {
-  if (same_word(word, "diamond")) return std::array{1, 1};
-  if (same_word(word, "regular") || same_word(word, "standard")) return std::array{2, 2};
-  if (same_word(word, "hercules")) return std::array{3, 3};
+  struct Named {
+    std::string_view name;
+    int yarns;
+  };
+  constexpr std::array<Named, 4> names = {{{"diamond", 1}, {"regular", 2}, {"standard", 2}, {"hercules", 3}}};
+  for (const Named& known : names)
+    if (same_word(known.name, word)) return std::array{known.yarns, known.yarns};
   return std::nullopt;
 }
 

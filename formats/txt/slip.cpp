@@ -54,8 +54,9 @@ bool is_guide_bar(std::string_view word) {
   std::size_t letters = 0;
   while (letters < word.size() && is_letter(word[letters])) ++letters;
   const std::string_view name = word.substr(0, letters), number = word.substr(letters);
+  constexpr std::string_view guide_bar = "GB", legebarre = "L";
   const bool has_digits = number.find_first_not_of("0123456789") == std::string_view::npos;
-  return has_digits && (same_word(name, "GB") || (same_word(name, "L") && !number.empty()));
+  return has_digits && (same_word(name, guide_bar) || (same_word(name, legebarre) && !number.empty()));
 }
 
 // `tricot`, `rib 1x1`, `warp knit`: what a cloth is called without the word of its block.
