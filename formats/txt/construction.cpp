@@ -7,6 +7,7 @@
 #include "fabric/lapping.h"
 #include "formats/txt/blocks.h"
 #include "formats/txt/pitch.h"
+#include "formats/txt/slip.h"
 #include "formats/txt/trade_draft.h"
 
 namespace selvage::formats::txt {
@@ -358,21 +359,6 @@ void read_loop(Parser& p, Knit& knit, std::string_view) {
 // `stitch length L`.
 void read_stitch_length(Parser& p, Knit& knit, std::string_view word) {
   if (p.expect("length")) read_loop(p, knit, word);
-}
-
-// What to write for knits by other names; empty: they have none. `1x1 rib`, `stockinette`, `pique`.
-std::string instead_of_knit(std::string_view text) {
-  const std::vector<std::string_view> words = words_of(text);
-  if (words.empty()) return {};
-  if (words.size() == 2 && same_word(words[1], "rib"))
-    return fmt::format("write 'rib {}'", words[0] == "1" ? "1x1" : words[0]);
-  for (const std::string_view jersey : {"stockinette", "stocking", "single-knit", "singleknit", "plain-knit"})
-    if (same_word(words[0], jersey)) return "write 'jersey'";
-  for (const std::string_view chart : {"pique", "lacoste", "fleece", "cardigan", "ponte", "cable", "lace",
-                                       "pointelle", "waffle", "terry", "tuck", "float", "miss"})
-    if (same_word(words[0], chart))
-      return "it is a chart of K, P, T and M behind 'knit' alone: see 'selvage explain chart'";
-  return {};
 }
 
 void read_knit_threads(Parser& p, Knit& knit, std::string_view) {

@@ -148,7 +148,7 @@ int Parser::unknown_word(const Block& block, std::string_view word) {
   const bool is_text = text_prefix(peek_rest()) == peek_rest().size();
   if (const std::optional<std::string> line =
           is_text ? meant_line(block.kind, peek_rest(), block.table->words) : std::nullopt) {
-    error(statement(), fmt::format("{} is no line of {}: write '{}'", in_quotes(peek_rest()),
+    error(statement(), fmt::format("{} is not a statement of {}: write '{}'", in_quotes(peek_rest()),
                                    block.outer != nullptr ? block.title() : "a fabric", *line));
     skip_statement();
     return skip_step;

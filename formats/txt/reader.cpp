@@ -41,13 +41,12 @@ std::optional<Unit> unit_by_name(std::string_view word) {
                                                                         {"\xC2\xB5m", Unit::um},
                                                                         {"\xCE\xBCm", Unit::um},
                                                                         {"in", Unit::inch},
-                                                                        {"inche", Unit::inch},
+                                                                        {"inches", Unit::inch},
                                                                         {"zoll", Unit::inch},
                                                                         {"\"", Unit::inch}}};
-  std::string_view one = word;
-  if (one.size() > 2 && lower(one.back()) == 's') one.remove_suffix(1);
+  const bool is_plural = word.size() > 2 && lower(word.back()) == 's';
   for (const auto& [name, unit] : names)
-    if (same_word(name, one)) return unit;
+    if (same_word(name, word) || (is_plural && same_word(name, word.substr(0, word.size() - 1)))) return unit;
   return std::nullopt;
 }
 

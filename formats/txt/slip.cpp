@@ -109,6 +109,29 @@ std::optional<std::string> meant_line(std::string_view kind, std::string_view li
   return is_known("courses") && is_known("wales") ? density(first, rest) : std::nullopt;
 }
 
+std::string instead_of_knit(std::string_view text) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.empty()) return {};
+  if (words.size() == 2 && begins_as_number(words[0]) && same_word(words[1], "rib"))
+    return fmt::format("write 'rib {}'", words[0] == "1" ? "1x1" : words[0]);
+  struct Named {
+    std::string_view name, knit;
+  };
+  constexpr std::array<Named, 6> names = {{{"cardigan", "full-cardigan"},
+                                           {"stockinette", "jersey"},
+                                           {"stocking", "jersey"},
+                                           {"single-knit", "jersey"},
+                                           {"singleknit", "jersey"},
+                                           {"plain-knit", "jersey"}}};
+  for (const Named& known : names)
+    if (same_word(words[0], known.name)) return fmt::format("write '{}'", known.knit);
+  for (const std::string_view chart : {"pique", "lacoste", "fleece", "ponte", "cable", "lace", "pointelle",
+                                       "waffle", "terry", "tuck", "float", "miss"})
+    if (same_word(words[0], chart))
+      return "it is a chart of K, P, T and M behind 'knit' alone: see 'selvage explain chart'";
+  return {};
+}
+
 bool closes_elsewhere(std::string_view kind, std::string_view word) {
   if (word == "}") return true;
   constexpr std::string_view end = "end";

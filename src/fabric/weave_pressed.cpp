@@ -130,8 +130,8 @@ std::optional<PressedCloth> press_once(const LooseCloth& cloth) {
 }
 
 // Thicknesses that a cloth is pressed to, each a two hundredth below the one before, from that which it has
-// by itself. A search that starts anew for each does not find all that there are; where one is found all that
-// are larger are allowed, and so many in turn without one are the end.
+// by itself. Not every one of them is found by a search of its own: once one is found, all larger ones are
+// accepted, and the search ends after `most_failures` failures in a row.
 constexpr double thickness_factor = 0.995;
 constexpr int most_failures = 40;
 

@@ -305,6 +305,7 @@ TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
                                             {"wales 4 13/cm", "wpi 33"},
                                             {"knit jersey", "knit stockinette"},
                                             {"knit jersey", "knit 1x1 rib"},
+                                            {"knit jersey", "knit cardigan"},
                                             {"courses", "cources"}})
     expect_cured(with(knit, slip));
   for (const Slip& slip : std::vector<Slip>{{"warpknit", "warp knit"},
