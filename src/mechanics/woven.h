@@ -1,0 +1,51 @@
+// Woven cloth in equilibrium: centre lines and sections of least energy without overlap. Sources: J. W. S. Hearle, W. J.
+// Shanahan, An energy method for calculations in fabric mechanics, J. Text. Inst. 69 (1978) 81 and 92; F. T. Peirce,
+// The geometry of cloth structure, J. Text. Inst. 28 (1937) T45; C. M. van Wyk, J. Text. Inst. 37 (1946) T285.
+#pragma once
+
+#include <memory>
+
+#include "core/diagnostics.h"
+#include "mechanics/woven_problem.h"
+
+namespace selvage::mechanics {
+
+class WovenEquilibrium {
+ public:
+  WovenEquilibrium(std::shared_ptr<const WovenProblem> problem, Minimum minimum, double scale)
+      : problem_(std::move(problem)), minimum_(std::move(minimum)), scale_(scale) {}
+
+  // The control value of a centre line, in the cloth's unit: `knot` = 4 * (number of the crossing) at crossings, three
+  // more between them. Cubic B-splines; the knots divide each gap evenly.
+  [[nodiscard]] double control_height(WovenSystem system, int yarn, int knot) const;
+  struct Size {
+    double width = 0, height = 0;
+  };
+  // Full sizes of the section (an ellipse), in the cloth's unit, anywhere along a yarn: 0 at crossing 0, 1 at the next.
+  [[nodiscard]] Size size(WovenSystem system, int yarn, double crossings) const;
+
+  [[nodiscard]] WovenEnergy energy() const { return problem_->energy(minimum_.x); }
+  [[nodiscard]] double residual() const { return minimum_.residual; }
+  // Largest overlap that any inequality sees, in the cloth's unit.
+  [[nodiscard]] double overlap() const { return scale_ * problem_->worst(minimum_.x); }
+  [[nodiscard]] int steps() const { return minimum_.steps; }
+  [[nodiscard]] int num_classes() const { return problem_->classes().count(); }
+  // False: the classes are those of neighbourhoods, since the whole repeat has too many.
+  [[nodiscard]] bool is_exact() const { return problem_->classes().is_exact; }
+  [[nodiscard]] const Partition& classes() const { return problem_->classes(); }
+
+ private:
+  std::shared_ptr<const WovenProblem> problem_;
+  Minimum minimum_;
+  double scale_;
+};
+
+struct WovenOptions {
+  double tolerance = 1e-9;
+  int max_classes = 256;
+};
+
+// Errors (geometry): no equilibrium without overlap exists ("jammed"), with the residual.
+Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options = {});
+
+}  // namespace selvage::mechanics
