@@ -12,30 +12,68 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 void SymmetricSum::clear() {
-  more_.clear();
+  for (std::vector<Entry>& column : columns_) column.clear();
+  has_more_ = false;
   if (has_places_) std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
 }
 
-bool SymmetricSum::add_at_place(int row, int column, double value) {
-  const int* begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
-  const int* end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
-  const int* at = std::lower_bound(begin, end, row);
-  if (at == end || *at != row) return false;
-  matrix_.valuePtr()[at - matrix_.innerIndexPtr()] += value;
-  return true;
+void SymmetricSum::merge(std::vector<Entry>& column) {
+  std::sort(column.begin(), column.end());
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < column.size(); ++k)
+    if (kept > 0 && column[kept - 1].first == column[k].first)
+      column[kept - 1].second += column[k].second;
+    else
+      column[kept++] = column[k];
+  column.resize(kept);
+}
+
+void SymmetricSum::add(const int* unknowns, std::size_t count, const double* values) {
+  constexpr std::size_t many = 1024;  // entries of a column that are merged
+  for (std::size_t b = 0; b < count; ++b) {
+    const int column = unknowns[b];
+    const int *at = nullptr, *end = nullptr;
+    if (has_places_) {
+      at = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
+      end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
+    }
+    for (std::size_t a = b; a < count; ++a) {
+      if (has_places_) at = std::lower_bound(at, end, unknowns[a]);
+      if (at != end && *at == unknowns[a]) {
+        matrix_.valuePtr()[at - matrix_.innerIndexPtr()] += values[a * count + b];
+        continue;
+      }
+      std::vector<Entry>& more = columns_[static_cast<std::size_t>(column)];
+      if (more.size() == more.capacity() && more.size() >= many) merge(more);
+      more.emplace_back(unknowns[a], values[a * count + b]);
+      has_more_ = true;
+    }
+  }
 }
 
 const Eigen::SparseMatrix<double>& SymmetricSum::lower() {
-  if (has_places_ && more_.empty()) return matrix_;
-  for (Index k = 0; k < size_; ++k) more_.emplace_back(k, k, 0.0);
-  if (has_places_)
-    for (Index column = 0; column < size_; ++column)
+  if (has_places_ && !has_more_) return matrix_;
+  std::size_t entries = 0;
+  for (Index column = 0; column < size_; ++column) {
+    std::vector<Entry>& more = columns_[static_cast<std::size_t>(column)];
+    more.emplace_back(static_cast<int>(column), 0.0);
+    if (has_places_)
       for (Eigen::SparseMatrix<double>::InnerIterator it(matrix_, column); it; ++it)
-        more_.emplace_back(it.row(), it.col(), it.value());
+        more.emplace_back(static_cast<int>(it.row()), it.value());
+    merge(more);
+    entries += more.size();
+  }
   matrix_.resize(size_, size_);
-  matrix_.setFromTriplets(more_.begin(), more_.end());
-  more_.clear();
+  matrix_.reserve(static_cast<Index>(entries));
+  for (Index column = 0; column < size_; ++column) {
+    matrix_.startVec(column);
+    for (const auto& [row, value] : columns_[static_cast<std::size_t>(column)])
+      matrix_.insertBack(row, column) = value;
+    columns_[static_cast<std::size_t>(column)].clear();
+  }
+  matrix_.finalize();
   has_places_ = is_new_ = true;
+  has_more_ = false;
   return matrix_;
 }
 
@@ -102,14 +140,29 @@ double to_boundary(const VectorXd& values, const VectorXd& step) {
   return part;
 }
 
+}  // namespace
+
+struct BarrierWorkspace::State {
+  explicit State(Index num_unknowns) : made(num_unknowns) {}
+  Derivatives made;
+  StepSolver solver;
+};
+
+BarrierWorkspace::BarrierWorkspace(Index num_unknowns) : state_(std::make_unique<State>(num_unknowns)) {}
+BarrierWorkspace::~BarrierWorkspace() = default;
+
+namespace {
+
 class Solver {
  public:
-  Solver(const BarrierProblem& problem, Minimum start, const BarrierOptions& options)
+  Solver(const BarrierProblem& problem, Minimum start, const BarrierOptions& options,
+         BarrierWorkspace::State& workspace)
       : problem_(problem),
         options_(options),
         at_(std::move(start)),
         equality_(problem.equality()),
-        made_(problem.num_unknowns()) {}
+        solver_(workspace.solver),
+        made_(workspace.made) {}
 
   Minimum run() {
     begin();
@@ -238,16 +291,17 @@ class Solver {
   const BarrierOptions& options_;
   Minimum at_;
   VectorXd equality_;
-  StepSolver solver_;
-  Derivatives made_;
+  StepSolver& solver_;
+  Derivatives& made_;
   VectorXd inequalities_, weights_, missing_, lagrangian_;
   double barrier_ = 0, penalty_ = 1, scale_ = 1;
 };
 
 }  // namespace
 
-Minimum minimize(const BarrierProblem& problem, Minimum start, const BarrierOptions& options) {
-  return Solver(problem, std::move(start), options).run();
+Minimum minimize(const BarrierProblem& problem, Minimum start, const BarrierOptions& options,
+                 BarrierWorkspace& workspace) {
+  return Solver(problem, std::move(start), options, workspace.state()).run();
 }
 
 }  // namespace selvage::mechanics

@@ -6,8 +6,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -47,46 +49,65 @@ std::array<Dual<N>, N> duals_of(const std::array<Form, N>& forms, const Eigen::V
   return made;
 }
 
-// A symmetric sparse matrix to which entries are added again and again at the same places.
+// A symmetric sparse matrix to which blocks are added again and again at the same places.
 class SymmetricSum {
  public:
-  explicit SymmetricSum(Eigen::Index size) : size_(size) {}
+  explicit SymmetricSum(Eigen::Index size) : size_(size), columns_(static_cast<std::size_t>(size)) {}
   void clear();  // all entries to 0, places kept
-  void add(int row, int column, double value) {
-    if (row < column) std::swap(row, column);
-    if (!has_places_ || !add_at_place(row, column, value)) more_.emplace_back(row, column, value);
-  }
+  // Adds values[a * count + b], b <= a, at (unknowns[a], unknowns[b]); unknowns increase.
+  void add(const int* unknowns, std::size_t count, const double* values);
   // The lower triangle, every diagonal entry present.
   [[nodiscard]] const Eigen::SparseMatrix<double>& lower();
   // Have places been added since the last call?
-  [[nodiscard]] bool has_new_places() {
-    const bool is_new = is_new_;
-    is_new_ = false;
-    return is_new;
-  }
+  [[nodiscard]] bool has_new_places() { return std::exchange(is_new_, false); }
 
  private:
-  bool add_at_place(int row, int column, double value);
+  using Entry = std::pair<int, double>;  // row, value
+  static void merge(std::vector<Entry>& column);
 
   Eigen::Index size_;
   Eigen::SparseMatrix<double> matrix_;
-  std::vector<Eigen::Triplet<double>> more_;
-  bool has_places_ = false, is_new_ = false;
+  std::vector<std::vector<Entry>> columns_;  // entries that have no place in the matrix yet
+  bool has_places_ = false, has_more_ = false, is_new_ = false;
 };
 
 // Adds factor * (second derivatives of a function of forms) + outer * (outer product of its gradient).
 template <std::size_t N>
 void add_second(SymmetricSum& sum, const std::array<Form, N>& forms, const Dual<N>& term, double factor,
                 double outer) {
+  constexpr std::size_t most = 4 * N;
+  std::array<int, most> unknowns;
+  std::size_t count = 0;
+  for (const Form& form : forms)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(form.count); ++k) {
+      std::size_t at = 0;
+      while (at < count && unknowns[at] < form.index[k]) ++at;
+      if (at < count && unknowns[at] == form.index[k]) continue;
+      std::copy_backward(unknowns.begin() + at, unknowns.begin() + count, unknowns.begin() + count + 1);
+      unknowns[at] = form.index[k];
+      ++count;
+    }
+  std::array<std::array<double, most>, N> weights, products;
+  for (std::size_t i = 0; i < N; ++i) {
+    std::fill_n(weights[i].begin(), count, 0.0);
+    std::fill_n(products[i].begin(), count, 0.0);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(forms[i].count); ++k)
+      weights[i][static_cast<std::size_t>(std::find(unknowns.begin(), unknowns.begin() + count, forms[i].index[k]) -
+                                          unknowns.begin())] += forms[i].weight[k];
+  }
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < N; ++j) {
       const double value = factor * term.second_at(i, j) + outer * term.first[i] * term.first[j];
-      for (std::size_t a = 0; a < static_cast<std::size_t>(forms[i].count); ++a)
-        for (std::size_t b = 0; b < static_cast<std::size_t>(forms[j].count); ++b) {
-          const int row = forms[i].index[a], column = forms[j].index[b];
-          if (row >= column) sum.add(row, column, value * forms[i].weight[a] * forms[j].weight[b]);
-        }
+      for (std::size_t b = 0; b < count; ++b) products[i][b] += value * weights[j][b];
     }
+  std::array<double, most * most> block;
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      double value = 0.0;
+      for (std::size_t i = 0; i < N; ++i) value += weights[i][a] * products[i][b];
+      block[a * count + b] = value;
+    }
+  sum.add(unknowns.data(), count, block.data());
 }
 // Adds factor * (gradient of a function of forms).
 template <std::size_t N>
@@ -166,7 +187,21 @@ struct Minimum {
   bool is_converged = false;
 };
 
+// Places of the matrix of a step and the order of its factorization: kept from one minimization to the next one of
+// the same problem.
+class BarrierWorkspace {
+ public:
+  explicit BarrierWorkspace(Eigen::Index num_unknowns);
+  ~BarrierWorkspace();
+  struct State;
+  [[nodiscard]] State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
 // From `start` (x; slacks and multipliers where they have the size of the inequalities, else set anew).
-Minimum minimize(const BarrierProblem& problem, Minimum start, const BarrierOptions& options);
+Minimum minimize(const BarrierProblem& problem, Minimum start, const BarrierOptions& options,
+                 BarrierWorkspace& workspace);
 
 }  // namespace selvage::mechanics

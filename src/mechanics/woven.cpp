@@ -36,14 +36,13 @@ WovenCloth scaled(WovenCloth cloth, double by) {
 }
 
 // Minima of the inequalities that take part, until all others hold, too.
-Minimum settle(WovenProblem& problem, Minimum at, double tolerance) {
-  constexpr int max_rounds = 30;
+Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_rounds, BarrierWorkspace& workspace) {
   BarrierOptions options;
   options.tolerance = tolerance;
   int steps = at.steps;
   for (int round = 0; round < max_rounds; ++round) {
     if (!problem.update(at, tolerance) && round > 0) break;
-    at = minimize(problem, std::move(at), options);
+    at = minimize(problem, std::move(at), options, workspace);
     steps += at.steps;
     if (!at.is_converged) break;
   }
@@ -73,40 +72,51 @@ WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, doub
 }
 
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {
-  constexpr double rough = 1e-3;
+  // Rough minima from all starts; those that are no copies of each other are polished, and the one of least
+  // energy is taken: of equal ones (1e-6) that of the first start.
+  constexpr double rough = 1e-3, copy = 0.05, tie = 1e-6;
+  constexpr int rough_rounds = 2, max_rounds = 30;
   const double scale = std::sqrt(mean_area(cloth));
   const WovenCloth ratios = scaled(cloth, 1.0 / scale);
-  const auto problem_of = [&] { return std::make_shared<WovenProblem>(ratios, options.max_classes); };
+  const auto problem = std::make_shared<WovenProblem>(ratios, options.max_classes);
+  BarrierWorkspace workspace(problem->num_unknowns());
   struct Candidate {
-    std::shared_ptr<WovenProblem> problem;
     Minimum minimum;
+    std::vector<char> active;
   };
-  std::optional<Candidate> best;
-  double least_residual = std::numeric_limits<double>::infinity(), violation = 0.0;
+  std::vector<Candidate> candidates;
   int steps = 0;
   for (const double share : warp_shares) {
-    Candidate candidate{problem_of(), {}};
-    candidate.minimum.x = candidate.problem->start(cloth.warp_share.value_or(share));
-    candidate.minimum = settle(*candidate.problem, std::move(candidate.minimum), rough);
-    steps += candidate.minimum.steps;
-    if (candidate.minimum.violation + candidate.minimum.residual < least_residual) {
-      least_residual = candidate.minimum.violation + candidate.minimum.residual;
-      violation = candidate.minimum.violation;
-    }
-    if (candidate.minimum.is_converged && (!best || candidate.minimum.energy < best->minimum.energy * (1.0 - 1e-6)))
-      best = std::move(candidate);
+    Minimum start;
+    start.x = problem->start(cloth.warp_share.value_or(share));
+    problem->set_active({});
+    Minimum found = settle(*problem, std::move(start), rough, rough_rounds, workspace);
+    steps += found.steps;
+    const bool is_copy = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+      return (other.minimum.x - found.x).cwiseAbs().maxCoeff() < copy;
+    });
+    if (!is_copy) candidates.push_back({std::move(found), problem->active()});
     if (cloth.warp_share) break;
   }
-  if (best) {
-    best->minimum.steps = steps;
-    Candidate polished{best->problem, settle(*best->problem, best->minimum, options.tolerance)};
-    if (polished.minimum.is_converged)
-      return WovenEquilibrium(polished.problem, std::move(polished.minimum), scale);
-    least_residual = polished.minimum.residual;
-    violation = polished.minimum.violation;
+  std::optional<Minimum> best;
+  double residual = std::numeric_limits<double>::infinity(), overlap = 0.0;
+  for (Candidate& candidate : candidates) {
+    problem->set_active(std::move(candidate.active));
+    candidate.minimum.steps = 0;
+    Minimum found = settle(*problem, std::move(candidate.minimum), options.tolerance, max_rounds, workspace);
+    steps += found.steps;
+    if (found.residual < residual) {
+      residual = found.residual;
+      overlap = problem->worst(found.x);
+    }
+    if (found.is_converged && (!best || found.energy < best->energy * (1.0 - tie))) best = std::move(found);
   }
-  return error(Kind::geometry, fmt::format("no equilibrium was found (residual {:.2g}, overlap {:.2g} of a yarn)",
-                                           least_residual, violation));
+  if (!best)
+    return error(Kind::geometry,
+                 fmt::format("no equilibrium was found (residual {:.2g}, overlap {:.2g} of a yarn)", residual,
+                             overlap));
+  best->steps = steps;
+  return WovenEquilibrium(problem, std::move(*best), scale);
 }
 
 }  // namespace selvage::mechanics

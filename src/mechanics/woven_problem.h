@@ -59,6 +59,9 @@ class WovenProblem final : public BarrierProblem {
   // Which inequalities take part: all that are not far from touching. True: one has entered that is violated by more
   // than `tolerance`, or one that no longer holds has left. Multipliers and slacks follow.
   bool update(Minimum& at, double tolerance);
+  // Which take part; empty: as in the beginning.
+  [[nodiscard]] const std::vector<char>& active() const { return is_active_; }
+  void set_active(std::vector<char> active) { is_active_ = std::move(active); }
 
   [[nodiscard]] Eigen::Index num_unknowns() const override { return num_unknowns_; }
   double evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& inequalities) const override;

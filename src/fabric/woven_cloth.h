@@ -1,0 +1,60 @@
+// A weave in equilibrium (mechanics/woven.h): from the threads and pitches of a text to the mechanics, and back to
+// centre lines and sections.
+#pragma once
+
+#include <string>
+
+#include "core/diagnostics.h"
+#include "fabric/draft.h"
+#include "fabric/plan.h"
+#include "fabric/weave_system.h"
+#include "mechanics/woven.h"
+
+namespace selvage::fabric {
+
+// What the equilibrium is of. `clearance`: between yarns, file units.
+struct ClothText {
+  const Fabric* fabric = nullptr;
+  const Weave* weave = nullptr;  // with a state
+  const System *warp = nullptr, *weft = nullptr;
+  const Drawdown* drawdown = nullptr;
+  double clearance = 0;
+};
+
+// Error (geometry, at the thread): its twist, as of twist_factor_of.
+Result<mechanics::WovenCloth> woven_cloth(const ClothText& text);
+
+class ClothInEquilibrium {
+ public:
+  // Errors (geometry): of woven_cloth; no equilibrium (at the weave).
+  static Result<ClothInEquilibrium> find(const ClothText& text);
+
+  // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with its
+  // section and its sizes. Yarns are numbered from 0, in both directions without end.
+  void shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
+             Vec3 (*to_place)(double s, double z, double across)) const;
+  // Height of a yarn's axis at a crossing.
+  [[nodiscard]] double height(bool is_weft, long long yarn, long long crossing) const;
+  [[nodiscard]] double thickness() const { return top_ - bottom_; }
+  [[nodiscard]] double max_width(bool is_weft) const { return max_width_[is_weft ? 1 : 0]; }
+  [[nodiscard]] double max_height(bool is_weft) const { return max_height_[is_weft ? 1 : 0]; }
+  [[nodiscard]] const mechanics::WovenEquilibrium& mechanics() const { return equilibrium_; }
+  // Fibre area over the area of the section, mean along a yarn.
+  [[nodiscard]] double packing(bool is_weft, long long yarn) const;
+  // Crimp (L - p) / p of a system, mean.
+  [[nodiscard]] double crimp(bool is_weft) const;
+
+ private:
+  ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth, mechanics::WovenEquilibrium equilibrium);
+  [[nodiscard]] double knot(bool is_weft, long long index) const;  // of quarters of gaps along a yarn
+  [[nodiscard]] double control_height(bool is_weft, long long yarn, long long index) const;
+  [[nodiscard]] nurbs::Curve unclamped(bool is_weft, long long yarn, long long first, long long last) const;
+
+  System warp_, weft_;
+  mechanics::WovenCloth cloth_;
+  mechanics::WovenEquilibrium equilibrium_;
+  double top_ = 0, bottom_ = 0;
+  double max_width_[2] = {0, 0}, max_height_[2] = {0, 0};
+};
+
+}  // namespace selvage::fabric
