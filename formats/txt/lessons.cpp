@@ -226,8 +226,7 @@ constexpr std::array lessons = {
            "even"},
     Lesson{"state", "weave", "state loom | relaxed | finished",
            "The cloth in equilibrium: loom under the tensions of weaving, relaxed under little tension, "
-           "finished "
-           "under equal tensions in both systems. See `selvage explain equilibrium`.",
+           "finished under equal tensions in both systems. See `selvage explain equilibrium`.",
            "state finished", "", "none: paths and sections follow from the formula of the profile"},
     Lesson{
         "pucker", "weave", "pucker tight T slack S ratio R every N",

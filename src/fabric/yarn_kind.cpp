@@ -17,11 +17,11 @@ namespace selvage::fabric {
 namespace {
 
 // Usual twist factors. Cotton twist multipliers (turns per inch over the square root of the cotton count,
-// 956.7 times smaller) of carded ring-spun yarns: 4.2 for warp, 3.5 for weft, within the ranges 3.4 to 5.0
-// and 3.0 to 3.8 of W. Klein, The Rieter Manual of Spinning 1, Technology of Short-staple Spinning, table of
-// twist coefficients. Worsted singles for weaving: metric twist factor (turns per metre over the square root
-// of Nm) 89, times 31.6; an assumption, no published table was found. Filament yarns have producer's twist, 0
-// to 300; tows and rovings none.
+// 956.7 times smaller) of carded ring-spun yarns: 4.2 for warp, 3.5 for weft, within the ranges 3.8 to 5.0
+// and 3.0 to 3.8 of short and medium staple in W. Klein, The Rieter Manual of Spinning 1, Technology of
+// Short-staple Spinning, table of twist coefficients. Worsted singles for weaving: metric twist factor (turns
+// per metre over the square root of Nm) 89, times 31.6; an assumption, no published table was found. Filament
+// yarns have producer's twist, 0 to 300; tows and rovings none.
 constexpr YarnKind spun_warp{"spun yarn", 4000}, spun_weft{"spun yarn", 3400};
 constexpr YarnKind worsted{"worsted yarn", 2800};
 constexpr YarnKind filament_yarn{"filament yarn", 100};
@@ -122,7 +122,10 @@ Status check_surface_angle(double turns, double diameter) {
 }  // namespace
 
 YarnKind yarn_kind_of(const Thread& thread, bool is_warp) {
-  if (thread.filaments == 1 || (!thread.filaments && thread.size_packing() == 1.0)) return monofilament;
+  // Several plies have pores between them, whatever they are.
+  const bool is_single = !thread.plies || thread.plies->count <= 1;
+  const bool is_one_piece = thread.filaments == 1 || (!thread.filaments && thread.size_packing() == 1.0);
+  if (is_single && is_one_piece) return monofilament;
   const YarnKind spun = is_warp ? spun_warp : spun_weft;
   const YarnKind by_filaments = thread.filaments ? filament_yarn : spun;
   const std::optional<FibreForm> form = fibre_form_of(thread);
@@ -139,7 +142,7 @@ YarnKind yarn_kind_of(const Thread& thread, bool is_warp) {
     case FibreForm::tow:
       return untwisted_tow;
     case FibreForm::wire:
-      return thread.filaments ? filament_yarn : monofilament;
+      return is_single && !thread.filaments ? monofilament : filament_yarn;
   }
   return spun;
 }

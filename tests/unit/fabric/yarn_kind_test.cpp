@@ -80,6 +80,10 @@ TEST(YarnKind, ByFilaments) {
     EXPECT_EQ(found.name, "monofilament");
     EXPECT_TRUE(found.is_solid);
   }
+  Thread cable = thread_of("nylon", 1);
+  cable.plies = Plies{3, 200};
+  EXPECT_FALSE(yarn_kind_of(cable, false).is_solid);
+  EXPECT_EQ(kind(cable), "filament yarn");
 }
 
 TEST(YarnKind, SolidWhereAllOfTheSectionIsFibre) {
