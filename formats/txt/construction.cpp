@@ -140,9 +140,10 @@ struct OwnLoopRows {
 // length of the text.
 constexpr long long most_shafts_checked = 100;
 
-// A weave's statements, and where its draft stands: only the whole block tells whether there has to be one.
+// A weave's statements, and the places of those that only the whole block can validate: of its draft, which
+// is required or forbidden, and of its state, which conflicts with other statements.
 struct WeaveBlock : Weave {
-  std::optional<Spot> draft_place;
+  std::optional<Spot> draft_place, state_place;
 };
 
 void read_warp(Parser& p, WeaveBlock& weave, std::string_view) {
@@ -276,6 +277,31 @@ void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
 void read_spacing(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto spacing = p.choice("spacing", spacing_words);
   if (p.finish()) weave.spacing = *spacing;
+}
+
+void read_state(Parser& p, WeaveBlock& weave, std::string_view) {
+  weave.state_place = p.statement();
+  const auto state = p.choice("state", state_words);
+  if (p.finish()) weave.state = *state;
+}
+
+// Reports statements of a weave that its state, an equilibrium of interlaced yarns, excludes.
+void check_state(Parser& p, const WeaveBlock& weave) {
+  if (!weave.state) return;
+  const auto report = [&](std::string_view needs, std::string_view remedy) {
+    p.error(*weave.state_place, fmt::format("'state' needs {}: {}", needs, remedy));
+  };
+  if (weave.profile == Weave::Profile::straight || !weave.binders.empty())
+    report("yarns that interlace, and straight yarns with binders do not",
+           "use a draft without 'profile' and 'binder', or leave out the state");
+  else if (weave.profile)
+    report("yarns whose path is free, and 'profile' prescribes it", "leave out the profile, or the state");
+  if (weave.draft.form == Draft::Form::leno)
+    report("warps that stay side by side, and those of a leno cross each other",
+           "use another draft, or leave out the state");
+  if (weave.pucker)
+    report("warps of equal length, and 'pucker' makes some of them longer",
+           "leave out the pucker, or the state");
 }
 
 // pucker tight T slack S ratio R every N
@@ -685,6 +711,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
                                         {"spacing", read_spacing},
+                                        {"state", read_state},
                                         {"pucker", read_pucker},
                                         {"thickness", into(&Weave::thickness, a_length("the thickness"))},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
@@ -721,6 +748,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (weave.profile && weave.thickness)
       p.error(opened,
               "with a profile its formula makes the thickness: leave out the profile, or the thickness");
+    check_state(p, weave);
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

@@ -224,6 +224,10 @@ constexpr std::array lessons = {
     Lesson{"spacing", "weave", "spacing even | relaxed",
            "Whether yarns come together under floats and apart at intersections.", "spacing relaxed", "",
            "even"},
+    Lesson{"state", "weave", "state loom | relaxed | finished",
+           "The cloth in equilibrium: loom under the tensions of weaving, relaxed under little tension, "
+           "finished under equal tensions in both systems. See `selvage explain equilibrium`.",
+           "state finished", "", "none: paths and sections follow from the formula of the profile"},
     Lesson{
         "pucker", "weave", "pucker tight T slack S ratio R every N",
         "A seersucker: S slack warps after T tight ones, R times as long, in waves of N picks; 1 < R <= 2.",

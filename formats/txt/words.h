@@ -64,6 +64,8 @@ inline constexpr std::array<Word<bool>, 2> leno_words{{{"half", false}, {"full",
 inline constexpr std::array<Word<bool>, 2> face_words{{{"warp-faced", true}, {"weft-faced", false}}};
 inline constexpr std::array<Word<Weave::Spacing>, 2> spacing_words{
     {{"even", Weave::Spacing::even}, {"relaxed", Weave::Spacing::relaxed}}};
+inline constexpr std::array<Word<Weave::State>, 3> state_words{
+    {{"loom", Weave::State::loom}, {"relaxed", Weave::State::relaxed}, {"finished", Weave::State::finished}}};
 inline constexpr std::array<Word<Weave::Profile>, 5> profile_words{
     {{"peirce", Weave::Profile::peirce},
      {"sine", Weave::Profile::sine},
@@ -150,9 +152,9 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
 }
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
-              says_all(spacing_words) && says_all(knit_method_words) && says_all(gating_words) &&
-              says_all(knit_shape_words) && says_all(stitch_words) && says_all(end_words) &&
-              says_all(edit_words) && says_all(move_words) &&
+              says_all(spacing_words) && says_all(state_words) && says_all(knit_method_words) &&
+              says_all(gating_words) && says_all(knit_shape_words) && says_all(stitch_words) &&
+              says_all(end_words) && says_all(edit_words) && says_all(move_words) &&
               section_words.size() == std::variant_size_v<yarn::Section>);
 static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1) &&
               says_all(curve_method_words));

@@ -335,6 +335,7 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   if (weave.amplitude) out.value(*weave.amplitude);
   if (weave.crimp) out.line(1, "crimp").value(*weave.crimp);
   if (weave.spacing) out.line(1, "spacing").word(word_of(spacing_words, *weave.spacing));
+  if (weave.state) out.line(1, "state").word(word_of(state_words, *weave.state));
   if (weave.pucker) {
     out.line(1, "pucker tight").value(weave.pucker->tight).word("slack").value(weave.pucker->slack);
     out.word("ratio").value(weave.pucker->ratio).word("every").value(weave.pucker->picks);

@@ -80,6 +80,34 @@ std::string units_text() {
   return text;
 }
 
+std::string equilibrium_text() {
+  return "A weave with `state` is built in equilibrium. Its yarns have the paths and cross-sections\n"
+         "of least energy, the sum of\n"
+         "  bending      of yarns along their paths;\n"
+         "  tension      of warps and wefts, which pulls yarns straight;\n"
+         "  flattening   of cross-sections, which twist resists: the larger the twist factor\n"
+         "               (turns a metre times the root of tex), the rounder the yarn;\n"
+         "               monofilaments and wires are not flattened;\n"
+         "  compaction   of fibres within the yarn.\n"
+         "Yarns do not overlap. A loose cloth has nearly round yarns, a dense one flat and compact ones.\n"
+         "\n"
+         "The state determines the tensions:\n"
+         "  state loom       those of weaving: wefts are nearly straight, warps have most of the crimp\n"
+         "  state relaxed    little tension in both systems: off the loom, not finished\n"
+         "  state finished   equal tensions in both systems\n"
+         "\n"
+         "`crimp S` and `thickness T` are constraints: of all cloths with this crimp, or not thicker\n"
+         "than T, the one of least energy is built. `profile`, `pucker`, `binder` and `draft leno`\n"
+         "exclude a state. The twist factor is that of the thread's `twist`, or the usual one of its\n"
+         "material and filaments.\n"
+         "\n"
+         "`selvage info` reports the cross-section and packing fraction of each thread, crimp,\n"
+         "thickness, and the steps and residual of the solution.\n"
+         "A cloth without equilibrium is an error with remedies: its yarns do not fit at these\n"
+         "pitches, or not with this crimp or thickness.\n"
+         "Without `state` paths and cross-sections follow from the formula of the profile.\n";
+}
+
 std::string exit_codes_text() {
   std::string text;
   for (const Code& code : all_codes())
@@ -116,6 +144,7 @@ const std::vector<Topic>& topics() {
              "until then.\n");
        }},
       {"language", "the words of the texts", [] { return *explain(""); }},
+      {"equilibrium", "woven cloths of least energy", equilibrium_text},
       {"overlap", "yarns that share space", [] {
          return *explain("overlap") +
                 "\n  selvage check FILE             says which yarns overlap, how deep, and where\n"
@@ -140,10 +169,14 @@ std::string options_of(std::string_view word) {
   return text.empty() ? text : "\nOptions of that name:\n" + text;
 }
 
-std::vector<std::string> all_help() {
-  std::vector<std::string> all = all_topics();
-  for (const std::string& word : explained_words()) all.push_back(word);
-  return all;
+std::string text_of(const Topic& topic) {
+  return fmt::format("{}: {}\n\n{}", topic.name, topic.title, topic.text());
+}
+
+const Topic* find_topic(std::string_view name) {
+  const auto found =
+      std::ranges::find_if(topics(), [&](const Topic& topic) { return same_word(topic.name, name); });
+  return found == topics().end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -156,6 +189,7 @@ std::vector<std::string> explained_words() {
     words.insert(measures.units.begin(), measures.units.end());
   for (const formats::Known& known : language().known) words.insert(known.word);
   for (const Code& code : all_codes()) words.insert(code.word);
+  for (const Topic& topic : topics()) words.emplace(topic.name);
   return {words.begin(), words.end()};
 }
 
@@ -179,6 +213,8 @@ Result<std::string> explain(const std::string& word) {
     for (const Code& code : all_codes())
       text +=
           fmt::format(" {}", code.word.find(' ') == std::string::npos ? code.word : "'" + code.word + "'");
+    text += "\nTopics:\n ";
+    for (const Topic& topic : topics()) text += fmt::format(" {}", topic.name);
     return text + "\n";
   }
   std::string text;
@@ -199,6 +235,7 @@ Result<std::string> explain(const std::string& word) {
       add(fmt::format("{}\n  {}: {}\n{}", code.word, code.where, code.meaning,
                       code.remedy.empty() ? "" : fmt::format("  {}\n", code.remedy)));
   if (!text.empty()) return text;
+  if (const Topic* const topic = find_topic(word)) return text_of(*topic);
   return error(Kind::usage, fmt::format("nothing is known of '{}'{} (all words: selvage explain)", word,
                                         did_you_mean(word, explained_words())));
 }
@@ -210,13 +247,12 @@ std::vector<std::string> all_topics() {
 }
 
 Result<std::string> help_of(const std::string& topic) {
-  for (const Topic& known : topics())
-    if (same_word(known.name, topic))
-      return fmt::format("{}: {}\n\n{}", known.name, known.title, known.text());
+  if (const Topic* const known = find_topic(topic)) return text_of(*known);
   Result<std::string> text = explain(topic);
   if (!text)
-    return error(Kind::usage, fmt::format("there is no help on '{}'{} (topics: {})", topic,
-                                          did_you_mean(topic, all_help()), fmt::join(all_topics(), ", ")));
+    return error(Kind::usage,
+                 fmt::format("there is no help on '{}'{} (topics: {})", topic,
+                             did_you_mean(topic, explained_words()), fmt::join(all_topics(), ", ")));
   std::string block = topic;
   std::transform(block.begin(), block.end(), block.begin(), lower);
   *text += statements_of(block) + options_of(block);

@@ -9,13 +9,14 @@
 
 namespace selvage::cli {
 
-// Every word that explain() knows, each once, in alphabetical order.
+// Words and topics that explain() has a text for, each once, in alphabetical order.
 std::vector<std::string> explained_words();
 
-// Of this word, of any case, all that it means; empty: a table of the words. Error (usage): it is unknown.
+// All meanings of this word, of any case, or the text of this topic; empty: a table of words and topics.
+// Error (usage): it is unknown.
 Result<std::string> explain(const std::string& word);
 
-// Topics of `selvage help` that are neither commands nor words.
+// Topics of `selvage help` and `selvage explain`: several words together, or none.
 std::vector<std::string> all_topics();
 // Such a topic, a block of the language with its statements, or what explain() says. Error (usage): it is
 // unknown.

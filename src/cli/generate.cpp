@@ -171,7 +171,6 @@ Expected expected(Command command, const Option& option) {
     found.words = explained_words();
   } else if (command == Command::help) {
     for (const Subcommand& one : pipeline::all_commands()) found.words.emplace_back(one.name);
-    for (const std::string& topic : all_topics()) found.words.push_back(topic);
     for (const std::string& word : explained_words()) found.words.push_back(word);
   } else if (option.argument.words == "FORMAT") {
     found.words = names_of_formats(command == Command::roundtrip ? Command::convert : command);

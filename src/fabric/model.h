@@ -306,6 +306,11 @@ struct Weave {
   std::optional<double> thickness;  // of the cloth (of a layer), at most; file units
   enum class Spacing { even, relaxed };
   std::optional<Spacing> spacing;
+  // Equilibrium of the cloth under the tensions of its two systems. loom: those of weaving, wefts nearly
+  // straight; relaxed: little tension in both; finished: equal tensions in both. None: the geometry follows
+  // from the formulas of the profile.
+  enum class State { loom, relaxed, finished };
+  std::optional<State> state;
   std::optional<Pucker> pucker;
   std::optional<int> layers;
   std::vector<Binder> binders;

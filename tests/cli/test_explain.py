@@ -164,12 +164,31 @@ class Explain(Case):
         for word in ("reshaped", "not done", "overlap", "sound", "warning"):
             self.explained(word)
 
+    def test_topics(self):
+        equilibrium = self.explained("Equilibrium")
+        self.assertEqual(equilibrium, self.succeeds("help", "equilibrium").stdout)
+        for state in array(source("words.h"), "state_words"):
+            self.assertIn(f"state {state} ", equilibrium)
+        for word in ("crimp", "thickness", "info", "profile", "twist", "remedies"):
+            self.assertIn(word, equilibrium)
+        for line in equilibrium.splitlines():
+            self.assertLess(len(line), 120)
+        for topic in self.known["topics"]:
+            self.explained(topic)
+            self.assertIn(topic, self.known["explain"])
+        state = self.explained("state")
+        self.assertIn("selvage explain equilibrium", state)
+        self.assertIn("equal tensions", state)
+        # The word has another meaning with `spacing`, which stays.
+        self.assertEqual(self.explained("relaxed").count("A word within"), 2)
+
     def test_unknown_words(self):
         self.assertIn("did you mean 'twist'", self.fails(2, "explain", "twst"))
         self.assertNotIn("did you mean", self.fails(2, "explain", STRANGE))
         words = self.succeeds("explain").stdout
-        for word in ("warpknit", "substrate", "130"):
+        for word in ("warpknit", "substrate", "130", "Topics:", "equilibrium"):
             self.assertIn(word, words)
+        self.assertIn("did you mean 'equilibrium'", self.fails(2, "explain", "equilibrum"))
 
 
 class Help(Case):
@@ -216,6 +235,7 @@ class Help(Case):
             ("tolerance", "B-spline surface"),
             ("sections", "racetrack"),
             ("overlap", "selvage relax"),
+            ("equilibrium", "state loom"),
             ("inputs", "@LIST"),
             ("outputs", "-o"),
             ("language", "warpknit"),

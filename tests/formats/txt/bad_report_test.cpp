@@ -22,6 +22,7 @@ TEST(BadSamples, EachAtItsLineAndColumn) {
       {"short_grid.txt", {14, 3, "8 rows; this one ends after 7"}},
       {"unknown_thread.txt", {2, 8, "unknown thread 'nothread'"}},
       {"version.txt", {1, 8, "version 2"}},
+      {"weave_state.txt", {8, 9, "did you mean 'finished'"}},
       {"zero_length.txt", {8, 5, "equals the one before"}},
   };
   std::set<std::string> seen;

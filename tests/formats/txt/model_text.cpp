@@ -263,6 +263,7 @@ class Flat {
     add(path + ".amplitude", v.amplitude);
     add(path + ".crimp", v.crimp);
     add(path + ".spacing", v.spacing);
+    add(path + ".state", v.state);
     add(path + ".thickness", v.thickness);
     add(path + ".layers", v.layers);
     add(path + ".binders", v.binders);

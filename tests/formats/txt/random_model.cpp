@@ -414,6 +414,8 @@ class Maker {
           if (!weave.profile) maybe(weave.thickness, [&] { return (1 + up_to(8)) / 8.0; });
           if (!weave.layers)
             maybe(weave.pucker, [&] { return Pucker{{}, count(), count(), 1.25, 1 + count()}; });
+          if (!weave.profile && !weave.pucker && weave.draft.form != Draft::Form::leno)
+            maybe(weave.state, [&] { return static_cast<Weave::State>(up_to(2)); });
           if (weave.draft.form == Draft::Form::leno) {
             Weave leno;
             leno.warp = weave.warp;

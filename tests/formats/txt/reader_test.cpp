@@ -309,6 +309,21 @@ TEST(Reader, LenosPuckersAndMandrels) {
   EXPECT_EQ(braid.mandrel[1].radius, 3.0);
 }
 
+TEST(Reader, StatesOfWeaves) {
+  const auto state_of = [](const std::string& statements) {
+    return item<Weave>(good("fabric 1\nthread t\n diameter 0.2\nend\nweave\nwarp t 4 pitch 1\n"
+                            "weft t 4 pitch 1\ndraft plain\n" +
+                            statements + "end\n"),
+                       0)
+        .state;
+  };
+  EXPECT_EQ(state_of(""), std::nullopt);
+  EXPECT_EQ(state_of("state loom\n"), Weave::State::loom);
+  EXPECT_EQ(state_of("STATE Relaxed # off the loom\n"), Weave::State::relaxed);
+  EXPECT_EQ(state_of("crimp 0.3\nthickness 0.5\nspacing relaxed\nlayers 2\nstate finished\n"),
+            Weave::State::finished);
+}
+
 TEST(Reader, ControlPointsMayCoincide) {
   EXPECT_EQ(
       path_of(good("fabric 1\nyarn y\npath control\n0 0 0\n1 0 0\n1 0 0\n2 0 0\nend\nend")).points.size(),
