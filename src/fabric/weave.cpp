@@ -207,6 +207,7 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
+  if (weave_.state) return prepare_equilibrium();
   const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
     if (!weave_.profile) {
       const std::optional<Bend> bend = natural_bend(crossed);
@@ -257,13 +258,35 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   return {};
 }
 
+Status WeaveConstruction::prepare_equilibrium() {
+  if (weave_.spacing == Weave::Spacing::relaxed) {
+    const auto [picks, ends] = changes_between(drawdown_);
+    relax_spacing(weft_, picks, weft_.widest + clearance_);
+    relax_spacing(warp_, ends, warp_.widest + clearance_);
+  }
+  Result<ClothInEquilibrium> found =
+      ClothInEquilibrium::find({&fabric_, &weave_, &warp_, &weft_, &drawdown_, clearance_});
+  if (!found) return found.error();
+  equilibrium_ = std::move(*found);
+  for (System* system : {&warp_, &weft_}) {
+    system->widest = equilibrium_->max_width(system == &weft_);
+    system->thickest = equilibrium_->max_height(system == &weft_);
+  }
+  layer_pitch_ = equilibrium_->thickness() + clearance_;
+  for (int layer = 0; layer < layers(); ++layer) {
+    add_block(Block::Kind::warp, layer, 0, row_of(warp_));
+    add_block(Block::Kind::weft, layer, 0, row_of(weft_));
+  }
+  return {};
+}
+
 void WeaveConstruction::warn(TextPlace place, std::string text, Diagnostics& diagnostics) const {
   diagnostics.add(warning(Kind::geometry, std::move(text)).placed(place, fabric_.file));
 }
 
 void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
   for (const System* system : {&warp_, &weft_})
-    if (system->widest > system->closest)
+    if (system->widest > system->closest && !equilibrium_)
       warn(system->text->place,
            fmt::format("yarns {:.6g} wide at a pitch of {:.6g} overlap their neighbours", system->widest,
                        system->closest),
@@ -430,8 +453,12 @@ Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
     if (Status made = plan_leno(*plan, is_weft, yarn); !made) return made.error();
     return plan;
   }
-  const std::vector<Pass> passes = passes_of(place);
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
+  if (equilibrium_) {
+    equilibrium_->shape(*plan, is_weft, yarn, reach.from, reach.to, to_place);
+    return plan;
+  }
+  const std::vector<Pass> passes = passes_of(place);
   if (is_sine(is_weft)) {
     if (Status made = plan_sine(*plan, passes, reach, is_weft); !made) return made.error();
     return plan;

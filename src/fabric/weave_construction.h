@@ -15,6 +15,7 @@
 #include "fabric/weave_fit.h"
 #include "fabric/weave_pressed.h"
 #include "fabric/weave_system.h"
+#include "fabric/woven_cloth.h"
 
 namespace selvage::fabric {
 
@@ -78,6 +79,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] std::uint64_t points_of(bool is_weft) const {
     const Reach& reach = is_weft ? along_y_ : along_x_;
     const auto crossings = static_cast<std::uint64_t>(reach.last - reach.first + 3);
+    if (weave_.state) return mechanics::spans_a_gap * crossings;
     return is_sine(is_weft) ? points_a_wave * crossings : crossings;
   }
   [[nodiscard]] bool is_sine(bool is_weft) const {
@@ -93,6 +95,7 @@ class WeaveConstruction final : public Construction {
     return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
+  Status prepare_equilibrium();
   Status prepare_leno();
   Status prepare_pucker(Diagnostics& diagnostics);
   Status pucker(YarnPlan& plan) const;
@@ -138,6 +141,7 @@ class WeaveConstruction final : public Construction {
   Reach along_x_, along_y_;
   Drawdown drawdown_;
   Heights heights_;
+  std::optional<ClothInEquilibrium> equilibrium_;
   std::optional<LenoShape> leno_;
   std::optional<PuckerShape> pucker_;
   std::optional<AnyBend> warp_bend_, weft_bend_;  // none: sine

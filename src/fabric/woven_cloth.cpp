@@ -31,26 +31,27 @@ Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bo
                                         const mechanics::WovenConstants& constants) {
   const Thread& thread = *woven.thread;
   mechanics::WovenYarn made;
-  const Result<YarnKind> kind = kind_of(thread, units, is_warp);
-  if (!kind) return kind.error();
+  const Result<std::optional<double>> twist = twist_factor_of(thread, units, is_warp);
+  if (!twist) return twist.error();
+  const bool is_solid = !*twist;
   const double mm = millimetres_per(units), area = yarn::area(woven.section, woven.size);
   const bool has_size = thread.diameter || (thread.section && yarn::nominal_size(*thread.section).width > 0.0);
   made.aspect = woven.size.width / woven.size.height;
   made.packing = constants.packing;
-  if (kind->is_solid) {
+  if (is_solid) {
     made.packing = made.max_packing = 1.0;
     made.stiffness = stiffness_of_solids;
   } else {
     made.max_packing = mechanics::densest_packing;
-    made.stiffness = cohesion + (1.0 - cohesion) * kind->twist_factor / mechanics::reference_twist_factor;
+    made.stiffness = cohesion + (1.0 - cohesion) * **twist / mechanics::reference_twist_factor;
   }
   if (thread.linear_density && thread.fibre_density()) {
     made.fibre_area = thread.linear_density->tex() / (1000.0 * *thread.fibre_density()) / (mm * mm);
     // A size that the text gives is that of the yarn at rest.
-    if (has_size && !kind->is_solid) made.packing = std::min(made.fibre_area / area, made.max_packing);
-    if (kind->is_solid) made.fibre_area = area;
+    if (has_size && !is_solid) made.packing = std::min(made.fibre_area / area, made.max_packing);
+    if (is_solid) made.fibre_area = area;
   } else {
-    if (!kind->is_solid) made.packing = std::min(thread.size_packing().value_or(constants.packing), made.max_packing);
+    if (!is_solid) made.packing = std::min(thread.size_packing().value_or(constants.packing), made.max_packing);
     made.fibre_area = made.packing * area;
   }
   return made;
@@ -188,7 +189,8 @@ void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, dou
     plan.line.parameters.push_back(parameter(s));
   }
   const yarn::SectionSize size = plan.spec.sizes.front().size;
-  plan.spec.section = yarn::Ellipse{size.width, size.height};
+  plan.spec.section = plan.thread.section.emplace(yarn::Ellipse{size.width, size.height});
+  plan.thread.packing = packing(is_weft, yarn);
 }
 
 double ClothInEquilibrium::packing(bool is_weft, long long yarn) const {

@@ -8,7 +8,7 @@ namespace selvage::mechanics {
 struct WovenConstants {
   double bending = 0.344;      // stiffness over tension * (mean fibre area of the cloth's yarns)
   double loom_tension = 1.92;  // of the weft over that of the warp, on the loom
-  double flattening = 0.0254;  // at a twist factor of 4,000, over tension * fibre area
+  double flattening = 0.373;   // at a twist factor of 4,000, over tension * fibre area
   double packing = 0.7545;     // of staple yarns at rest in a dense cloth
   double compaction = 1.0;     // van Wyk's stiffness over tension per fibre area
 };

@@ -1,0 +1,241 @@
+// Cloth in equilibrium against what is known of it: derivatives by differences, units, quarter turns, Peirce's
+// geometry of rigid wires, plates.
+#include "mechanics/woven.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace selvage::mechanics {
+namespace {
+
+using Eigen::VectorXd;
+
+// Ends over which each pick is under the warp: rows of 0 and 1.
+WovenCloth cloth_of(const std::vector<std::vector<int>>& draft, double area = 0.0132, double pitch = 0.38) {
+  WovenCloth cloth;
+  WovenYarn yarn;
+  yarn.fibre_area = area;
+  cloth.wefts.assign(draft.size(), yarn);
+  cloth.warps.assign(draft.front().size(), yarn);
+  cloth.weft_gaps.assign(draft.size(), 1.1 * pitch);
+  cloth.warp_gaps.assign(draft.front().size(), pitch);
+  for (const std::vector<int>& pick : draft)
+    for (const int end : pick) cloth.warp_on_top.push_back(static_cast<char>(end));
+  cloth.clearance = 0.002;
+  return cloth;
+}
+
+const std::vector<std::vector<int>> plain = {{1, 0}, {0, 1}};
+const std::vector<std::vector<int>> twill = {{1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
+
+WovenEquilibrium found(const WovenCloth& cloth) {
+  Result<WovenEquilibrium> result = find_equilibrium(cloth);
+  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text);
+  return std::move(*result);
+}
+
+// All sizes and control values of a cloth, warps first; lengths divided by `unit`.
+std::vector<double> numbers_of(const WovenEquilibrium& equilibrium, const WovenCloth& cloth, double unit) {
+  std::vector<double> made;
+  for (const WovenSystem system : {WovenSystem::warp, WovenSystem::weft}) {
+    const int yarns = system == WovenSystem::warp ? cloth.ends() : cloth.picks(),
+              crossings = system == WovenSystem::warp ? cloth.picks() : cloth.ends();
+    for (int yarn = 0; yarn < yarns; ++yarn)
+      for (int knot = 0; knot < spans_a_gap * crossings; ++knot) {
+        made.push_back(equilibrium.control_height(system, yarn, knot) / unit);
+        const auto size = equilibrium.size(system, yarn, knot / static_cast<double>(spans_a_gap));
+        made.push_back(size.width / unit);
+        made.push_back(size.height / unit);
+      }
+  }
+  return made;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0.0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) most = std::max(most, std::abs(a[k] - b[k]));
+  return most;
+}
+
+TEST(Woven, DerivativesAgreeWithDifferences) {
+  WovenCloth cloth = cloth_of(twill, 1.0, 3.2);
+  cloth.wefts[1].fibre_area = 0.8;
+  cloth.clearance = 0.01;
+  cloth.thickness = 3.0;
+  WovenProblem problem(cloth, 256);
+  Minimum at;
+  at.x = problem.start(0.6);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> noise(-0.03, 0.03);
+  for (double& value : at.x) value += noise(random);
+  problem.update(at, 1e-9);
+  VectorXd inequalities;
+  problem.evaluate(at.x, inequalities);
+  ASSERT_GT(inequalities.size(), 100);
+  std::uniform_real_distribution<double> weight(0.0, 1.0);
+  VectorXd multipliers(inequalities.size());
+  for (double& value : multipliers) value = weight(random);
+  const VectorXd none = VectorXd::Zero(inequalities.size());
+  // Of the Lagrangian: gradient by differences of values, second derivatives by differences of gradients.
+  const auto gradient_at = [&](const VectorXd& x) -> VectorXd {
+    Derivatives made(problem.num_unknowns());
+    problem.differentiate(x, multipliers, none, made);
+    return made.gradient - made.gradients.combined(multipliers, problem.num_unknowns());
+  };
+  Derivatives made(problem.num_unknowns());
+  problem.differentiate(at.x, multipliers, none, made);
+  const VectorXd gradient = gradient_at(at.x);
+  const Eigen::SparseMatrix<double> second = made.second.lower();
+  constexpr double step = 1e-5;
+  for (Eigen::Index k = 0; k < problem.num_unknowns(); ++k) {
+    VectorXd up = at.x, down = at.x, values;
+    up[k] += step;
+    down[k] -= step;
+    const double high = problem.evaluate(up, values) - multipliers.dot(values);
+    const double low = problem.evaluate(down, values) - multipliers.dot(values);
+    EXPECT_NEAR(gradient[k], (high - low) / (2 * step), 1e-6 * (1.0 + std::abs(gradient[k]))) << k;
+    const VectorXd column = (gradient_at(up) - gradient_at(down)) / (2 * step);
+    for (Eigen::Index row = k; row < problem.num_unknowns(); ++row)
+      EXPECT_NEAR(second.coeff(row, k), column[row], 1e-5 * (1.0 + std::abs(column[row]))) << row << ' ' << k;
+  }
+}
+
+TEST(Woven, IsTheSameInEveryUnit) {
+  const WovenCloth cloth = cloth_of(twill);
+  const std::vector<double> here = numbers_of(found(cloth), cloth, 1.0);
+  for (const double unit : {1e-3, 1.0 / 25.4, 1e3}) {
+    WovenCloth other = cloth;
+    for (auto* yarns : {&other.warps, &other.wefts})
+      for (WovenYarn& yarn : *yarns) yarn.fibre_area *= unit * unit;
+    for (auto* gaps : {&other.warp_gaps, &other.weft_gaps})
+      for (double& gap : *gaps) gap *= unit;
+    other.clearance *= unit;
+    EXPECT_LT(largest_difference(numbers_of(found(other), other, unit), here), 1e-8) << unit;
+  }
+}
+
+TEST(Woven, IsTheSameWithOtherLastDigits) {
+  const WovenCloth cloth = cloth_of(twill);
+  WovenCloth other = cloth;
+  for (double& gap : other.warp_gaps) gap *= 1.0 + 1e-9;
+  for (WovenYarn& yarn : other.wefts) yarn.fibre_area *= 1.0 - 1e-9;
+  EXPECT_LT(largest_difference(numbers_of(found(cloth), cloth, 1.0), numbers_of(found(other), other, 1.0)), 1e-8);
+}
+
+TEST(Woven, AQuarterTurnExchangesTheSystems) {
+  WovenCloth cloth = cloth_of(twill);
+  cloth.weft_tension = 1.7;
+  for (WovenYarn& yarn : cloth.wefts) yarn.fibre_area *= 1.2;
+  // The warp becomes the weft; which is on top is exchanged by the turn over (x y z -> y x -z).
+  WovenCloth turned = cloth;
+  std::swap(turned.warps, turned.wefts);
+  std::swap(turned.warp_gaps, turned.weft_gaps);
+  std::swap(turned.warp_tension, turned.weft_tension);
+  for (int pick = 0; pick < turned.picks(); ++pick)
+    for (int end = 0; end < turned.ends(); ++end)
+      turned.warp_on_top[static_cast<std::size_t>(pick * turned.ends() + end)] =
+          cloth.warp_on_top[static_cast<std::size_t>(end * cloth.ends() + pick)];
+  const WovenEquilibrium a = found(cloth), b = found(turned);
+  for (int yarn = 0; yarn < cloth.ends(); ++yarn)
+    for (int knot = 0; knot < spans_a_gap * cloth.picks(); ++knot)
+      EXPECT_NEAR(a.control_height(WovenSystem::warp, yarn, knot), -b.control_height(WovenSystem::weft, yarn, knot),
+                  1e-8);
+  EXPECT_NEAR(a.energy().sum(), b.energy().sum(), 1e-9);
+}
+
+TEST(Woven, RigidWiresOfAPlainClothTouchAtTheirCrossings) {
+  // F. T. Peirce 1937: h1 + h2 = d1 + d2.
+  WovenCloth cloth = cloth_of(plain, 1.0, 4.0);
+  for (auto* yarns : {&cloth.warps, &cloth.wefts})
+    for (WovenYarn& yarn : *yarns) {
+      yarn.packing = yarn.max_packing = 1.0;
+      yarn.stiffness = 1000;
+    }
+  cloth.clearance = 0.0;
+  const WovenEquilibrium wires = found(cloth);
+  const auto height = [&](WovenSystem system) {  // of the axis at the first crossing
+    return (wires.control_height(system, 0, -1) + 4.0 * wires.control_height(system, 0, 0) +
+            wires.control_height(system, 0, 1)) /
+           6.0;
+  };
+  const double diameter = 2.0 / std::sqrt(std::numbers::pi);
+  EXPECT_NEAR(height(WovenSystem::warp) - height(WovenSystem::weft), diameter, 2e-3 * diameter);
+  const auto size = wires.size(WovenSystem::warp, 0, 0.0);
+  EXPECT_NEAR(size.width, diameter, 5e-3 * diameter);
+  EXPECT_NEAR(size.height, diameter, 5e-3 * diameter);
+}
+
+TEST(Woven, YarnsOfALooseClothAreNearlyRoundAndOfADenseOneFlat) {
+  const auto ratio = [](double pitch) {
+    const WovenEquilibrium cloth = found(cloth_of(plain, 0.0132, pitch));
+    const auto size = cloth.size(WovenSystem::warp, 0, 0.0);
+    return size.height / size.width;
+  };
+  const double loose = ratio(1.2), dense = ratio(0.30);
+  EXPECT_GT(loose, 0.85);
+  EXPECT_LT(dense, 0.75);
+}
+
+TEST(Woven, TensionMovesTheWavesToTheOtherSystem) {
+  const auto share = [](double weft_tension) {
+    WovenCloth cloth = cloth_of(plain);
+    cloth.weft_tension = weft_tension;
+    const WovenEquilibrium result = found(cloth);
+    const auto rise = [&](WovenSystem system) { return std::abs(result.control_height(system, 0, 0)); };
+    return rise(WovenSystem::warp) / (rise(WovenSystem::warp) + rise(WovenSystem::weft));
+  };
+  EXPECT_GT(share(2.0), share(1.0));
+  EXPECT_LT(share(0.5), share(1.0));
+}
+
+TEST(Woven, PlatesPressTheClothToItsThickness) {
+  WovenCloth cloth = cloth_of(plain);
+  const auto top_of = [](const WovenEquilibrium& equilibrium, WovenSystem system) {
+    const double height = (equilibrium.control_height(system, 0, -1) + 4.0 * equilibrium.control_height(system, 0, 0) +
+                           equilibrium.control_height(system, 0, 1)) /
+                          6.0;
+    return std::abs(height) + 0.5 * equilibrium.size(system, 0, 0.0).height;
+  };
+  const WovenEquilibrium free = found(cloth);
+  const double half = std::max(top_of(free, WovenSystem::warp), top_of(free, WovenSystem::weft));
+  cloth.thickness = 2.0 * 0.9 * half;
+  const WovenEquilibrium pressed = found(cloth);
+  EXPECT_LE(top_of(pressed, WovenSystem::warp), 0.9 * half * (1.0 + 1e-6));
+  EXPECT_LE(top_of(pressed, WovenSystem::weft), 0.9 * half * (1.0 + 1e-6));
+  EXPECT_GT(pressed.energy().sum(), free.energy().sum());
+}
+
+TEST(Woven, TheWarpHasTheShareOfTheWavesThatIsAskedFor) {
+  WovenCloth cloth = cloth_of(twill);
+  cloth.warp_share = 0.7;
+  const WovenEquilibrium result = found(cloth);
+  double warp = 0.0, weft = 0.0;
+  for (int pick = 0; pick < 3; ++pick)
+    for (int end = 0; end < 3; ++end) {
+      const double side = cloth.warp_on_top[static_cast<std::size_t>(3 * pick + end)] != 0 ? 1.0 : -1.0;
+      const auto height = [&](WovenSystem system, int yarn, int crossing) {
+        const int knot = spans_a_gap * crossing;
+        return (result.control_height(system, yarn, knot - 1) + 4.0 * result.control_height(system, yarn, knot) +
+                result.control_height(system, yarn, knot + 1)) /
+               6.0;
+      };
+      warp += side * height(WovenSystem::warp, end, pick);
+      weft -= side * height(WovenSystem::weft, pick, end);
+    }
+  EXPECT_NEAR(warp / (warp + weft), 0.7, 1e-6);
+}
+
+TEST(Woven, ACloseClothIsJammed) {
+  // Fibres need 0.0132 / 0.907 = 0.0146; a square of the pitch 0.1 has 0.01 for a warp as high as it is wide.
+  const Result<WovenEquilibrium> result = find_equilibrium(cloth_of(plain, 0.0132, 0.1));
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.error().text.find("residual"), std::string::npos) << result.error().text;
+}
+
+}  // namespace
+}  // namespace selvage::mechanics
