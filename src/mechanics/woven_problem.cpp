@@ -218,16 +218,29 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
   }
 }
 
-// A yarn and the next one of its system, side by side.
+// A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other.
 void WovenProblem::add_beside(WovenSystem system, Crossing at) {
+  constexpr int places = 2 * spans_a_gap;
   const WovenSystem other = system == WovenSystem::warp ? WovenSystem::weft : WovenSystem::warp;
   const Crossing next = along(other, at, 1);
-  for (int knot = 0; knot < spans_a_gap; ++knot) {
-    const double gaps = static_cast<double>(knot) / spans_a_gap;
+  const auto on_one_side = [&](int crossing) {
+    return warp_on_top(along(system, at, crossing)) == warp_on_top(along(system, next, crossing));
+  };
+  for (int place = 0; place < places; ++place) {
+    const double gaps = static_cast<double>(place) / places;
     const Point a = point(system, at, gaps), b = point(system, next, gaps);
-    besides_.push_back({{a.z, a.half_width, a.half_height, b.z, b.half_width, b.half_height},
-                        gap(other, at, 0),
-                        cloth_.clearance});
+    const bool is_level = (2 * place > places || on_one_side(0)) && (2 * place < places || on_one_side(1));
+    if (!is_level || place % spans_a_gap != 0) {
+      besides_.push_back({{a.z, a.slope, a.half_width, a.half_height, b.z, b.slope, b.half_width, b.half_height},
+                          gap(other, at, 0),
+                          cloth_.clearance});
+    } else {
+      Linear apart;
+      apart.forms[0].constant = gap(other, at, 0) - cloth_.clearance;
+      apart.forms[0].add(width_at(system, at.pick, at.end, place / spans_a_gap), -1.0);
+      apart.forms[0].add(width_at(system, next.pick, next.end, place / spans_a_gap), -1.0);
+      linears_.push_back(apart);
+    }
   }
 }
 

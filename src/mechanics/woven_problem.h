@@ -101,7 +101,7 @@ class WovenProblem final : public BarrierProblem {
     int warp_place = 0, weft_place = 0;
   };
   struct Beside {
-    std::array<Form, 6> forms;  // z, half width, half height of both
+    std::array<Form, 8> forms;  // z, slope, half width, half height of both
     double spacing = 0, clearance = 0;
   };
   struct Fold {

@@ -54,11 +54,13 @@ T gap_of(const Place& place, const std::array<T, 8>& v) {
          sqrt(square(weft_width) * uu + square(weft_height) * (ww + 1.0)) -
          place.clearance * sqrt(uu + ww + 1.0);
 }
-// Ellipses side by side: how far their axes lie apart, over the ellipse of the sum of their half sizes.
+// Ellipses side by side, as they are cut across the cloth: how far their axes lie apart, over the ellipse of the
+// sum of their half sizes.
 template <class T, class Place>
-T beside_of(const Place& place, const std::array<T, 6>& v) {
-  const T width = v[1] + v[4] + place.clearance, height = v[2] + v[5] + place.clearance;
-  return square(place.spacing * reciprocal(width)) + square((v[0] - v[3]) * reciprocal(height)) - 1.0;
+T beside_of(const Place& place, const std::array<T, 8>& v) {
+  const T width = v[2] + v[6] + place.clearance,
+          height = v[3] * sqrt(square(v[1]) + 1.0) + v[7] * sqrt(square(v[5]) + 1.0) + place.clearance;
+  return square(place.spacing * reciprocal(width)) + square((v[0] - v[4]) * reciprocal(height)) - 1.0;
 }
 
 }  // namespace
@@ -161,17 +163,14 @@ void WovenProblem::differentiate(const VectorXd& x, const VectorXd& multipliers,
   });
 }
 
-// The last place up to which the slope away from the crossing does not fall: beyond it a tangent leaves the yarn.
+// The place where the yarn leaves the crossing most steeply: beyond it a tangent leaves the yarn.
 int WovenProblem::reach_of(const Run& run, const VectorXd& x) const {
   constexpr double slack = 1e-3;
   double most = -std::numeric_limits<double>::infinity();
+  for (const Form& slope : run.slopes) most = std::max(most, run.sign * slope.at(x));
   int reach = 0;
-  for (std::size_t k = 0; k < run.slopes.size(); ++k) {
-    const double slope = run.sign * run.slopes[k].at(x);
-    if (slope < most - slack) break;
-    most = std::max(most, slope);
-    reach = static_cast<int>(k);
-  }
+  for (std::size_t k = 0; k < run.slopes.size(); ++k)
+    if (run.sign * run.slopes[k].at(x) >= most - slack) reach = static_cast<int>(k);
   return reach;
 }
 
