@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "fabric/equilibrium_report.h"
 #include "fabric/model.h"
 #include "fabric/repeat.h"
 #include "yarn/path.h"
@@ -53,6 +55,8 @@ class Construction {
   [[nodiscard]] virtual Vec2 unit() const = 0;
   // What yarns that do the same are called together: warp, course, bar1, braider.
   [[nodiscard]] virtual std::string system(std::size_t index) const = 0;
+  // Of a cloth in equilibrium.
+  [[nodiscard]] virtual std::optional<EquilibriumReport> equilibrium() const { return std::nullopt; }
 };
 
 // The same plan, told from the origin.

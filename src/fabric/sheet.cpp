@@ -553,6 +553,7 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
   Sheet sheet = measuring.sheet(item);
   sheet.place = place_of(item);
   sheet.file = fabric.file;
+  sheet.equilibrium = cloth.equilibrium();
   return sheet;
 }
 

@@ -78,6 +78,7 @@ struct Sheet {
   std::optional<double> braid_angle;                   // degrees
   std::vector<SystemSheet> systems;                    // in the order of their first yarns
   std::vector<ThreadSheet> threads;
+  std::optional<EquilibriumReport> equilibrium;
   [[nodiscard]] std::optional<double> porosity() const {
     return fibre_fraction > 0 ? std::optional(1 - fibre_fraction) : std::nullopt;
   }

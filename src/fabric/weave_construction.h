@@ -68,6 +68,9 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] Repeat repeat() const override;
   [[nodiscard]] Vec2 unit() const override { return {weft_.text->pitch, warp_.text->pitch}; }
   [[nodiscard]] std::string system(std::size_t index) const override;
+  [[nodiscard]] std::optional<EquilibriumReport> equilibrium() const override {
+    return equilibrium_ ? std::optional(equilibrium_->report()) : std::nullopt;
+  }
 
  private:
   struct Place {

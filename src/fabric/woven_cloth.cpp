@@ -113,7 +113,12 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
 
 ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth,
                                        mechanics::WovenEquilibrium equilibrium)
-    : warp_(*text.warp), weft_(*text.weft), cloth_(std::move(cloth)), equilibrium_(std::move(equilibrium)) {
+    : warp_(*text.warp),
+      weft_(*text.weft),
+      state_(*text.weave->state),
+      millimetres_(millimetres_per(text.fabric->units)),
+      cloth_(std::move(cloth)),
+      equilibrium_(std::move(equilibrium)) {
   top_ = -1e300;
   bottom_ = 1e300;
   for (const bool is_weft : {false, true}) {
@@ -203,6 +208,41 @@ double ClothInEquilibrium::packing(bool is_weft, long long yarn) const {
     sum += yarns[own].fibre_area / yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
   }
   return sum / halves;
+}
+
+EquilibriumReport ClothInEquilibrium::report() const {
+  EquilibriumReport made;
+  made.state = state_ == Weave::State::loom ? "loom" : state_ == Weave::State::relaxed ? "relaxed" : "finished";
+  for (const bool is_weft : {false, true}) {
+    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(), crossings = is_weft ? cloth_.ends() : cloth_.picks();
+    EquilibriumReport::System system;
+    system.name = is_weft ? "weft" : "warp";
+    const double weight = 1.0 / (static_cast<double>(yarns) * crossings);
+    for (int yarn = 0; yarn < yarns; ++yarn) {
+      for (int crossing = 0; crossing < crossings; ++crossing) {
+        const auto here = equilibrium_.size(system_of(is_weft), yarn, crossing),
+                   between = equilibrium_.size(system_of(is_weft), yarn, crossing + 0.5);
+        system.width += weight * millimetres_ * here.width;
+        system.height += weight * millimetres_ * here.height;
+        system.width_between += weight * millimetres_ * between.width;
+        system.height_between += weight * millimetres_ * between.height;
+      }
+      system.packing += packing(is_weft, yarn) / yarns;
+    }
+    system.crimp = crimp(is_weft);
+    made.systems.push_back(system);
+  }
+  const mechanics::WovenEnergy energy = equilibrium_.energy();
+  const double whole = energy.sum() > 0.0 ? energy.sum() : 1.0;
+  made.bending = energy.bending / whole;
+  made.tension = energy.tension / whole;
+  made.flattening = energy.flattening / whole;
+  made.compaction = energy.compaction / whole;
+  made.steps = equilibrium_.steps();
+  made.residual = equilibrium_.residual();
+  made.num_classes = equilibrium_.num_classes();
+  made.is_exact = equilibrium_.is_exact();
+  return made;
 }
 
 double ClothInEquilibrium::crimp(bool is_weft) const {

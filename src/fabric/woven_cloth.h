@@ -38,7 +38,7 @@ class ClothInEquilibrium {
   [[nodiscard]] double thickness() const { return top_ - bottom_; }
   [[nodiscard]] double max_width(bool is_weft) const { return max_width_[is_weft ? 1 : 0]; }
   [[nodiscard]] double max_height(bool is_weft) const { return max_height_[is_weft ? 1 : 0]; }
-  [[nodiscard]] const mechanics::WovenEquilibrium& mechanics() const { return equilibrium_; }
+  [[nodiscard]] EquilibriumReport report() const;
   // Fibre area over the area of the section, mean along a yarn.
   [[nodiscard]] double packing(bool is_weft, long long yarn) const;
   // Crimp (L - p) / p of a system, mean.
@@ -51,6 +51,8 @@ class ClothInEquilibrium {
   [[nodiscard]] nurbs::Curve unclamped(bool is_weft, long long yarn, long long first, long long last) const;
 
   System warp_, weft_;
+  Weave::State state_;
+  double millimetres_;
   mechanics::WovenCloth cloth_;
   mechanics::WovenEquilibrium equilibrium_;
   double top_ = 0, bottom_ = 0;

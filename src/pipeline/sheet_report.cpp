@@ -62,6 +62,30 @@ Json thread_json(const fabric::ThreadSheet& thread) {
   return json;
 }
 
+Json equilibrium_json(const fabric::EquilibriumReport& found) {
+  Json json;
+  json["state"] = std::string(found.state);
+  for (const auto& system : found.systems)
+    json["systems"][std::string(system.name)] = {
+        {"width", system.width},
+        {"height", system.height},
+        {"width_between", system.width_between},
+        {"height_between", system.height_between},
+        {"packing_fraction", system.packing},
+        {"crimp", system.crimp},
+        {"take_up", system.take_up()},
+    };
+  json["energy"] = {{"bending", found.bending},
+                    {"tension", found.tension},
+                    {"flattening", found.flattening},
+                    {"compaction", found.compaction}};
+  json["steps"] = found.steps;
+  json["residual"] = found.residual;
+  json["classes"] = found.num_classes;
+  json["exact"] = found.is_exact;
+  return json;
+}
+
 Json sheet_json(const fabric::Sheet& sheet) {
   Json json;
   const auto put = [&](const char* key, const std::optional<double>& value, double times = 1) {
@@ -81,6 +105,7 @@ Json sheet_json(const fabric::Sheet& sheet) {
   put("repeat_y", known(sheet.repeat_y));
   for (const fabric::SystemSheet& system : sheet.systems)
     json["systems"][system.name] = system_json(system, sheet.is_per_metre());
+  if (sheet.equilibrium) json["equilibrium"] = equilibrium_json(*sheet.equilibrium);
   for (const fabric::ThreadSheet& thread : sheet.threads) json["threads"][thread.name] = thread_json(thread);
   return json;
 }
@@ -132,6 +157,23 @@ std::string threads_table(const fabric::Sheet& sheet) {
   return table.text();
 }
 
+std::string equilibrium_text(const fabric::EquilibriumReport& found) {
+  std::string text = line("equilibrium", fmt::format("state {}; {} Newton steps, residual {:.1e}", found.state,
+                                                     found.steps, found.residual));
+  text += line("energy", fmt::format("bending {:.0f} %, tension {:.0f} %, flattening {:.0f} %, compaction {:.0f} %",
+                                     100 * found.bending, 100 * found.tension, 100 * found.flattening,
+                                     100 * found.compaction));
+  if (!found.is_exact)
+    text += line("", fmt::format("crossings in {} classes of equal neighbourhoods: approximate", found.num_classes));
+  Table table({"system", "section at crossings, mm", "between", "packing", "crimp %", "take-up %"});
+  const auto size = [](double width, double height) { return fmt::format("{:.4g} x {:.4g}", width, height); };
+  for (const auto& system : found.systems)
+    table.add({std::string(system.name), size(system.width, system.height),
+               size(system.width_between, system.height_between), fmt::format("{:.3f}", system.packing),
+               fmt::format("{:.2f}", 100 * system.crimp), fmt::format("{:.2f}", 100 * system.take_up())});
+  return text + table.text();
+}
+
 std::string without_mass(const fabric::Sheet& sheet) {
   for (const fabric::ThreadSheet& thread : sheet.threads)
     if (!(thread.tex > 0))
@@ -163,6 +205,7 @@ std::string sheet_text(const fabric::Sheet& sheet, std::string_view file) {
     text += line("fibres fill", percent(sheet.fibre_fraction));
     text += line("porosity", percent(sheet.porosity()));
   }
+  if (sheet.equilibrium) text += equilibrium_text(*sheet.equilibrium);
   return text + systems_table(sheet) + threads_table(sheet);
 }
 
