@@ -17,6 +17,7 @@
 #include <span>
 #include <utility>
 
+#include "core/rounding.h"
 #include "fabric/weave_construction.h"
 #include "fabric/yarn_spec.h"
 
@@ -258,6 +259,37 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   return {};
 }
 
+// With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and yarns.
+Message WeaveConstruction::jammed(const Message& failure) const {
+  LooseCloth cloth{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
+  const auto is_found = [&](const LooseCloth& changed, double yarns, const std::optional<double>& thickness) {
+    Weave weave = weave_;
+    weave.thickness = thickness;
+    return ClothInEquilibrium::find(
+               {&fabric_, &weave, &changed.warp, &changed.weft, &drawdown_, clearance_, yarns})
+        .ok();
+  };
+  if (weave_.thickness && is_found(cloth, 1.0, std::nullopt)) {
+    double low = *weave_.thickness, high = 2.0 * low;
+    while (!is_found(cloth, 1.0, high)) high = 2.0 * (low = high);
+    while (high - low > 0.005 * high) {
+      const double middle = 0.5 * (low + high);
+      (is_found(cloth, 1.0, middle) ? high : low) = middle;
+    }
+    return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
+                                             "{:.6g} {} at the least",
+                                             *weave_.thickness, name_of(fabric_.units), rounded_up(high),
+                                             name_of(fabric_.units)))
+        .placed(weave_.place);
+  }
+  return error(Kind::geometry,
+               fmt::format("the cloth is jammed: {}; {}", failure.text,
+                           remedies_for(cloth, [&](const LooseCloth& changed, double yarns) {
+                             return is_found(changed, yarns, weave_.thickness);
+                           })))
+      .placed(weave_.place);
+}
+
 Status WeaveConstruction::prepare_equilibrium() {
   if (weave_.spacing == Weave::Spacing::relaxed) {
     const auto [picks, ends] = changes_between(drawdown_);
@@ -266,7 +298,7 @@ Status WeaveConstruction::prepare_equilibrium() {
   }
   Result<ClothInEquilibrium> found =
       ClothInEquilibrium::find({&fabric_, &weave_, &warp_, &weft_, &drawdown_, clearance_});
-  if (!found) return found.error();
+  if (!found) return found.error().place.line == weave_.place.line ? jammed(found.error()) : found.error();
   equilibrium_ = std::move(*found);
   for (System* system : {&warp_, &weft_}) {
     system->widest = equilibrium_->max_width(system == &weft_);

@@ -99,6 +99,7 @@ class WeaveConstruction final : public Construction {
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
   Status prepare_equilibrium();
+  [[nodiscard]] Message jammed(const Message& failure) const;
   Status prepare_leno();
   Status prepare_pucker(Diagnostics& diagnostics);
   Status pucker(YarnPlan& plan) const;

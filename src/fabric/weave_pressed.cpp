@@ -191,7 +191,7 @@ struct Easier {
   double warp_pitch = 1, weft_pitch = 1, yarns = 1;  // factors
 };
 
-bool has_room(const LooseCloth& cloth, const Easier& easier) {
+bool has_room(const LooseCloth& cloth, const Easier& easier, const HasRoom& tried) {
   WeaveSystem warp_text = *cloth.warp.text, weft_text = *cloth.weft.text;
   warp_text.pitch *= easier.warp_pitch;
   weft_text.pitch *= easier.weft_pitch;
@@ -206,7 +206,7 @@ bool has_room(const LooseCloth& cloth, const Easier& easier) {
     change_sections(*system, [&](const WovenThread& woven) {
       return yarn::with_lengths(woven.section, [&](double length) { return easier.yarns * length; });
     });
-  return press_cloth(changed).has_value();
+  return tried(changed, easier.yarns);
 }
 
 // The smallest factor from `low` on, to 1 %, at which the cloth has room; none up to 4.
@@ -317,17 +317,21 @@ std::optional<double> least_thickness(const LooseCloth& cloth) {
 }
 
 std::string remedies_for(const LooseCloth& cloth) {
+  return remedies_for(cloth, [](const LooseCloth& changed, double) { return press_cloth(changed).has_value(); });
+}
+
+std::string remedies_for(const LooseCloth& cloth, const HasRoom& tried) {
   const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;
   const auto shown_factor = [&](bool is_warp, double by) {
     const WeaveSystem& system = is_warp ? *cloth.warp.text : *cloth.weft.text;
     return as_shown(system, by * system.pitch, cloth.units) / system.pitch;
   };
   const std::optional<double> wider = least_factor(1.0, [&](double by) {
-    return has_room(cloth, {shown_factor(true, by), shown_factor(false, by), 1.0});
+    return has_room(cloth, {shown_factor(true, by), shown_factor(false, by), 1.0}, tried);
   });
   if (!wider) return "no pitch up to four times as large gives it: its yarns are too thick";
   double thinner = 1.0 / *wider;
-  while (!has_room(cloth, {1.0, 1.0, thinner}) && thinner > 0.2) thinner *= 0.99;
+  while (!has_room(cloth, {1.0, 1.0, thinner}, tried) && thinner > 0.2) thinner *= 0.99;
   const double percent = 100.0 * (*wider - 1.0);
   std::string text = fmt::format(
       "both ways it is {:.{}f} % too dense. Remedies: {} for the warp and {} for the weft; or {}", percent,
@@ -338,7 +342,7 @@ std::string remedies_for(const LooseCloth& cloth) {
     const double pitch = is_warp ? warp_pitch : weft_pitch;
     const auto factor = least_factor(*wider, [&](double by) {
       return has_room(cloth,
-                      {is_warp ? shown_factor(true, by) : 1.0, is_warp ? 1.0 : shown_factor(false, by), 1.0});
+                      {is_warp ? shown_factor(true, by) : 1.0, is_warp ? 1.0 : shown_factor(false, by), 1.0}, tried);
     });
     if (!factor) return std::nullopt;
     return fmt::format(

@@ -75,6 +75,7 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
       Result<mechanics::WovenYarn> yarn =
           woven_yarn(system.thread(k), text.fabric->units, is_warp, cloth.constants);
       if (!yarn) return yarn.error();
+      yarn->fibre_area *= text.yarns * text.yarns;
       yarns.push_back(*yarn);
     }
     gaps = gaps_of(system, count);

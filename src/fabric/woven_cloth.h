@@ -19,6 +19,7 @@ struct ClothText {
   const System *warp = nullptr, *weft = nullptr;
   const Drawdown* drawdown = nullptr;
   double clearance = 0;
+  double yarns = 1;  // diameters over those of the text
 };
 
 // Error (geometry, at the thread): its twist, as of twist_factor_of.

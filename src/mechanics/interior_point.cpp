@@ -180,6 +180,7 @@ class Solver {
 
  private:
   void begin() {
+    at_.is_converged = false;
     at_.energy = problem_.evaluate(at_.x, inequalities_);
     const Index count = inequalities_.size();
     if (at_.slacks.size() == count && at_.multipliers.size() == count && count > 0) {
@@ -242,12 +243,14 @@ class Solver {
     constexpr int max_halvings = 30;
     if (!solver_.factorize(made_.second)) return false;
     const VectorXd central = barrier_ * at_.slacks.cwiseInverse() - weights_.cwiseProduct(missing_);
-    VectorXd dx = solver_.solve(made_.gradients.combined(central, at_.x.size()) - made_.gradient);
-    double new_equality = 0.0;
+    VectorXd right = made_.gradients.combined(central, at_.x.size()) - made_.gradient;
+    if (equality_.size() > 0) right += at_.equality_multiplier * equality_;
+    VectorXd dx = solver_.solve(right);
     if (equality_.size() > 0) {
       const VectorXd along = solver_.solve(equality_);
-      new_equality = -(equality_gap(at_.x) + equality_.dot(dx)) / equality_.dot(along);
-      dx += new_equality * along;
+      const double change = -(equality_gap(at_.x) + equality_.dot(dx)) / equality_.dot(along);
+      dx += change * along;
+      at_.equality_multiplier += change;
     }
     const VectorXd rise = made_.gradients.times(dx);
     const VectorXd ds = rise + missing_;
@@ -282,7 +285,6 @@ class Solver {
     at_.energy = energy;
     inequalities_ = std::move(inequalities);
     at_.multipliers += to_boundary(at_.multipliers, dm) * dm;
-    at_.equality_multiplier = equality_.size() > 0 ? new_equality : 0.0;
     return true;
   }
 

@@ -17,10 +17,11 @@
 
 namespace selvage::mechanics {
 
-// A linear combination of at most four unknowns.
+// A linear combination of at most six unknowns.
 struct Form {
-  std::array<int, 4> index{};
-  std::array<double, 4> weight{};
+  static constexpr std::size_t max_terms = 6;
+  std::array<int, max_terms> index{};
+  std::array<double, max_terms> weight{};
   int count = 0;
   double constant = 0;
 
@@ -75,7 +76,7 @@ class SymmetricSum {
 template <std::size_t N>
 void add_second(SymmetricSum& sum, const std::array<Form, N>& forms, const Dual<N>& term, double factor,
                 double outer) {
-  constexpr std::size_t most = 4 * N;
+  constexpr std::size_t most = Form::max_terms * N;
   std::array<int, most> unknowns;
   std::size_t count = 0;
   for (const Form& form : forms)

@@ -113,7 +113,7 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
   }
   if (!best)
     return error(Kind::geometry,
-                 fmt::format("no equilibrium was found (residual {:.2g}, overlap {:.2g} of a yarn)", residual,
+                 fmt::format("no equilibrium without overlap was found (residual {:.1e}, overlap {:.2g} of a yarn)", residual,
                              overlap));
   best->steps = steps;
   return WovenEquilibrium(problem, std::move(*best), scale);

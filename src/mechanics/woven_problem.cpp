@@ -21,7 +21,6 @@ namespace {
 constexpr int block_size = 2 * spans_a_gap + 8;
 constexpr int places_a_half_gap = 8, corner_places = 4;
 constexpr double steepest = 2.2;          // slope of a centre line, 66 degrees
-constexpr double fold_reserve = 1.05;     // radius of curvature over half the height, at least
 constexpr double least_half_height = 0.02;
 constexpr double hold = 1e-5;             // of yarns that nothing holds
 
@@ -53,6 +52,11 @@ Partition classes_of(const WovenCloth& cloth, int max_classes) {
       colors.push_back(
           color_of(known, {warps[end], wefts[pick], cloth.warp_on_top[pick * warps.size() + end]}));
   return stable_partition(colors, cloth.picks(), cloth.ends(), max_classes);
+}
+
+void add_scaled(Form& sum, const Form& form, double by) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(form.count); ++k)
+    if (form.weight[k] != 0.0) sum.add(form.index[k], by * form.weight[k]);
 }
 
 double smooth_step(double t) { return t * t * (3.0 - 2.0 * t); }
@@ -190,28 +194,23 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
     high.forms[0].add(from + 1, 1.0);
     high.forms[0].constant = -least_half_height;
     linears_.push_back(high);
-    if (cloth_.thickness)
-      for (const double side : {-1.0, 1.0}) {
-        Linear plate;
-        const Point here = point(system, at, 0.5 * half);
-        for (int k = 0; k < here.z.count; ++k)
-          if (here.z.weight[static_cast<std::size_t>(k)] != 0.0)
-            plate.forms[0].add(here.z.index[static_cast<std::size_t>(k)],
-                               -side * here.z.weight[static_cast<std::size_t>(k)]);
-        plate.forms[0].add(from + 1, -1.0);
-        plate.forms[0].constant = 0.5 * *cloth_.thickness;
-        linears_.push_back(plate);
-      }
   }
   for (int knot = 0; knot < spans_a_gap; ++knot) {
     const Point here = point(system, at, static_cast<double>(knot) / spans_a_gap);
     holds_.push_back({here.z, 0.5 * hold * share * area * length / spans_a_gap});
     const Point middle = point(system, at, (knot + 0.5) / spans_a_gap);
     for (const double side : {-1.0, 1.0}) {
-      folds_.push_back({{here.slope, here.curvature, here.half_height}, side});
+      for (const Point& place : {here, middle}) {
+        folds_.push_back({{place.slope, place.curvature, place.half_height}, side});
+        if (!cloth_.thickness) continue;
+        Linear plate;
+        plate.forms[0].constant = 0.5 * *cloth_.thickness;
+        add_scaled(plate.forms[0], place.z, -side);
+        add_scaled(plate.forms[0], place.half_height, -1.0);
+        linears_.push_back(plate);
+      }
       Linear steep;
-      steep.forms[0] = middle.slope;
-      for (double& weight : steep.forms[0].weight) weight *= side;
+      add_scaled(steep.forms[0], middle.slope, side);
       steep.forms[0].constant = steepest;
       linears_.push_back(steep);
     }

@@ -67,7 +67,7 @@ T beside_of(const Place& place, const std::array<T, 8>& v) {
 
 template <class Use>
 void WovenProblem::for_candidates(const Use& use) const {
-  constexpr double fold_reserve = 1.05;
+  constexpr double fold_reserve = 1.05;  // radius of curvature over half the height, at least
   for (const Packed& p : packed_)
     use(p.forms, [&](const auto& v) { return v[0] * v[1] * (1.0 / p.least_product) - 1.0; });
   for (const Linear& p : linears_) use(p.forms, [](const auto& v) { return v[0]; });
