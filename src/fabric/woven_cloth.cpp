@@ -9,7 +9,6 @@
 
 #include "core/wrapped.h"
 #include "fabric/yarn_kind.h"
-#include "nurbs/measure.h"
 #include "nurbs/restrict.h"
 
 namespace selvage::fabric {
@@ -20,8 +19,6 @@ using mechanics::WovenSystem;
 
 // Tension of both systems where little is left of that of the finisher.
 constexpr double relaxed_tension = 0.05;
-// Of a yarn without twist, over that of one with a twist factor of 4,000: what friction and sizing hold together.
-constexpr double cohesion = 0.05;
 constexpr double stiffness_of_solids = 100;
 
 WovenSystem system_of(bool is_weft) { return is_weft ? WovenSystem::weft : WovenSystem::warp; }
@@ -43,7 +40,7 @@ Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bo
     made.stiffness = stiffness_of_solids;
   } else {
     made.max_packing = mechanics::densest_packing;
-    made.stiffness = cohesion + (1.0 - cohesion) * **twist / mechanics::reference_twist_factor;
+    made.stiffness = mechanics::stiffness_by_twist(**twist);
   }
   if (thread.linear_density && thread.fibre_density()) {
     made.fibre_area = thread.linear_density->tex() / (1000.0 * *thread.fibre_density()) / (mm * mm);
@@ -230,7 +227,7 @@ EquilibriumReport ClothInEquilibrium::report() const {
       }
       system.packing += packing(is_weft, yarn) / yarns;
     }
-    system.crimp = crimp(is_weft);
+    system.crimp = equilibrium_.crimp(system_of(is_weft));
     made.systems.push_back(system);
   }
   const mechanics::WovenEnergy energy = equilibrium_.energy();
@@ -244,19 +241,6 @@ EquilibriumReport ClothInEquilibrium::report() const {
   made.num_classes = equilibrium_.num_classes();
   made.is_exact = equilibrium_.is_exact();
   return made;
-}
-
-double ClothInEquilibrium::crimp(bool is_weft) const {
-  const int yarns = is_weft ? cloth_.picks() : cloth_.ends(), crossings = is_weft ? cloth_.ends() : cloth_.picks();
-  const long long last = static_cast<long long>(crossings) * mechanics::spans_a_gap;
-  double sum = 0.0;
-  for (int yarn = 0; yarn < yarns; ++yarn) {
-    const double cloth = knot(is_weft, last) - knot(is_weft, 0);
-    const nurbs::Curve line =
-        nurbs::restricted(unclamped(is_weft, yarn, 0, last), knot(is_weft, 0), knot(is_weft, last));
-    sum += nurbs::arc_length(line) / cloth - 1.0;
-  }
-  return sum / yarns;
 }
 
 }  // namespace selvage::fabric

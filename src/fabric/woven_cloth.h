@@ -42,8 +42,6 @@ class ClothInEquilibrium {
   [[nodiscard]] EquilibriumReport report() const;
   // Fibre area over the area of the section, mean along a yarn.
   [[nodiscard]] double packing(bool is_weft, long long yarn) const;
-  // Crimp (L - p) / p of a system, mean.
-  [[nodiscard]] double crimp(bool is_weft) const;
 
  private:
   ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth, mechanics::WovenEquilibrium equilibrium);

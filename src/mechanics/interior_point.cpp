@@ -184,8 +184,14 @@ class Solver {
     at_.energy = problem_.evaluate(at_.x, inequalities_);
     const Index count = inequalities_.size();
     if (at_.slacks.size() == count && at_.multipliers.size() == count && count > 0) {
-      barrier_ = std::clamp(at_.slacks.dot(at_.multipliers) / static_cast<double>(count),
-                            last_barrier, options_.first_barrier);
+      // From a former minimum: what has touched keeps its multiplier, what has not its slack.
+      barrier_ = std::clamp(at_.slacks.dot(at_.multipliers) / static_cast<double>(count), next_barrier,
+                            options_.first_barrier);
+      for (Index k = 0; k < count; ++k)
+        if (at_.slacks[k] > at_.multipliers[k])
+          at_.multipliers[k] = barrier_ / at_.slacks[k];
+        else
+          at_.slacks[k] = barrier_ / at_.multipliers[k];
     } else {
       barrier_ = options_.first_barrier;
       at_.slacks = inequalities_.cwiseMax(0.1);
@@ -288,7 +294,7 @@ class Solver {
     return true;
   }
 
-  static constexpr double last_barrier = 1e-11;
+  static constexpr double last_barrier = 1e-11, next_barrier = 1e-6;
   const BarrierProblem& problem_;
   const BarrierOptions& options_;
   Minimum at_;

@@ -24,6 +24,8 @@ class WovenEquilibrium {
   // Full sizes of the section (an ellipse), in the cloth's unit, anywhere along a yarn: 0 at crossing 0, 1 at the next.
   [[nodiscard]] Size size(WovenSystem system, int yarn, double crossings) const;
 
+  // Mean of a system's yarns, (L - p) / p.
+  [[nodiscard]] double crimp(WovenSystem system) const { return problem_->crimp(system, minimum_.x); }
   [[nodiscard]] WovenEnergy energy() const { return problem_->energy(minimum_.x); }
   [[nodiscard]] double residual() const { return minimum_.residual; }
   // Largest overlap that any inequality sees, in the cloth's unit.

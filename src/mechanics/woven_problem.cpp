@@ -165,10 +165,10 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
   const nurbs::GaussRule& rule = nurbs::gauss_rule(2);
   for (int span = 0; span < spans_a_gap; ++span)
     for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-      const double weight = share * area * 0.5 * rule.weights[k] * length / spans_a_gap;
+      const double along = share * 0.5 * rule.weights[k] * length / spans_a_gap, weight = area * along;
       const Point here = point(system, at, (span + 0.5 + 0.5 * rule.nodes[k]) / spans_a_gap);
       paths_.push_back(
-          {{here.slope, here.curvature}, weight * constants.bending, weight * tension(system)});
+          {{here.slope, here.curvature}, weight * constants.bending, weight * tension(system), along, system});
       sections_.push_back({{here.half_width, here.half_height},
                            weight * constants.flattening * own.stiffness,
                            weight * constants.compaction,
@@ -217,18 +217,21 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
   }
 }
 
-// A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other.
+// A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other, and where they
+// change sides they pass at one height.
 void WovenProblem::add_beside(WovenSystem system, Crossing at) {
   constexpr int places = 2 * spans_a_gap;
   const WovenSystem other = system == WovenSystem::warp ? WovenSystem::weft : WovenSystem::warp;
   const Crossing next = along(other, at, 1);
-  const auto on_one_side = [&](int crossing) {
-    return warp_on_top(along(system, at, crossing)) == warp_on_top(along(system, next, crossing));
+  // How far the yarn is above the next one: by no side, or by one up or down.
+  const auto above = [&](int crossing) {
+    return (warp_on_top(along(system, at, crossing)) ? 1 : 0) - (warp_on_top(along(system, next, crossing)) ? 1 : 0);
   };
+  const bool is_level_here = above(0) == 0, is_level_next = above(1) == 0, change_sides = above(0) * above(1) < 0;
   for (int place = 0; place < places; ++place) {
     const double gaps = static_cast<double>(place) / places;
     const Point a = point(system, at, gaps), b = point(system, next, gaps);
-    const bool is_level = (2 * place > places || on_one_side(0)) && (2 * place < places || on_one_side(1));
+    const bool is_level = 2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
     if (!is_level || place % spans_a_gap != 0) {
       besides_.push_back({{a.z, a.slope, a.half_width, a.half_height, b.z, b.slope, b.half_width, b.half_height},
                           gap(other, at, 0),

@@ -21,7 +21,7 @@ inline constexpr int spans_a_gap = 4;
 
 struct WovenYarn {
   double fibre_area = 0;
-  double packing = 0.7545;      // at rest: fibre area over the area of the section
+  double packing = 0.737;       // at rest: fibre area over the area of the section
   double max_packing = 0.9069;  // as close as fibres go
   double aspect = 1;            // width over height of its section by itself
   double stiffness = 1;         // against flattening, of a yarn of the reference twist factor
@@ -71,6 +71,8 @@ class WovenProblem final : public BarrierProblem {
 
   // Per crossing of the repeat, without what only holds loose yarns in place.
   [[nodiscard]] WovenEnergy energy(const Eigen::VectorXd& x) const;
+  // (L - p) / p of a system: lengths of all its yarns over those of the cloth, less one.
+  [[nodiscard]] double crimp(WovenSystem system, const Eigen::VectorXd& x) const;
   // The deepest violation of any inequality, whether it takes part or not.
   [[nodiscard]] double worst(const Eigen::VectorXd& x) const;
   [[nodiscard]] const Partition& classes() const { return classes_; }
@@ -84,7 +86,8 @@ class WovenProblem final : public BarrierProblem {
   };
   struct PathTerm {
     std::array<Form, 2> forms;  // slope, second derivative
-    double bending = 0, tension = 0;
+    double bending = 0, tension = 0, length = 0;
+    WovenSystem system = WovenSystem::warp;
   };
   struct SectionTerm {
     std::array<Form, 2> forms;  // half width, half height

@@ -125,6 +125,16 @@ WovenEnergy WovenProblem::energy(const VectorXd& x) const {
   return made;
 }
 
+double WovenProblem::crimp(WovenSystem system, const VectorXd& x) const {
+  double yarn = 0.0, cloth = 0.0;
+  for (const PathTerm& term : paths_) {
+    if (term.system != system) continue;
+    yarn += term.length * sqrt(square(term.forms[0].at(x)) + 1.0);
+    cloth += term.length;
+  }
+  return yarn / cloth - 1.0;
+}
+
 double WovenProblem::evaluate(const VectorXd& x, VectorXd& inequalities) const {
   const double sum = weighted_energy(x).sum();
   double held = 0.0;
