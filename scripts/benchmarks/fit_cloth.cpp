@@ -1,6 +1,7 @@
 // Take-up of mill cloths in equilibrium, by the constants of the command line: what scripts/fit-cloth runs.
 // fit_cloth ROWS.csv [bending=X loom_tension=X flattening=X packing=X compaction=X]
-// Prints a row a cloth: draft, stated and built take-up of warp and weft (per cent); `none` where no equilibrium was found.
+// Prints a row a cloth: draft, stated and built take-up of warp and weft (per cent); `none` where no
+// equilibrium was found.
 #include <cstdio>
 #include <exception>
 #include <string_view>
@@ -16,7 +17,8 @@ void run(int count, char** arguments) {
   for (int k = 2; k < count; ++k) {
     const std::string_view argument = arguments[k];
     const std::size_t equals = argument.find('=');
-    if (equals == std::string_view::npos) throw std::runtime_error("NAME=VALUE expected: " + std::string(argument));
+    if (equals == std::string_view::npos)
+      throw std::runtime_error("NAME=VALUE expected: " + std::string(argument));
     const std::string_view name = argument.substr(0, equals);
     double* value = name == "bending"        ? &constants.bending
                     : name == "loom_tension" ? &constants.loom_tension
@@ -27,8 +29,9 @@ void run(int count, char** arguments) {
     if (value == nullptr) throw std::runtime_error("no such constant: " + std::string(name));
     *value = std::strtod(arguments[k] + equals + 1, nullptr);
   }
-  std::printf("bending=%.6g loom_tension=%.6g flattening=%.6g packing=%.6g compaction=%.6g\n", constants.bending,
-              constants.loom_tension, constants.flattening, constants.packing, constants.compaction);
+  std::printf("bending=%.6g loom_tension=%.6g flattening=%.6g packing=%.6g compaction=%.6g\n",
+              constants.bending, constants.loom_tension, constants.flattening, constants.packing,
+              constants.compaction);
   for (const MillCloth& row : read_mill_cloths(arguments[1], constants)) {
     const auto found = find_equilibrium(row.cloth);
     std::printf("%s,%g,%g,", row.draft.c_str(), row.warp_take_up, row.weft_take_up);

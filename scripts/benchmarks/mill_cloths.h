@@ -15,7 +15,7 @@ namespace selvage::mechanics {
 
 struct MillCloth {
   std::string draft;
-  WovenCloth cloth;  // lengths in mm
+  WovenCloth cloth;                           // lengths in mm
   double warp_take_up = 0, weft_take_up = 0;  // stated, per cent
 };
 

@@ -154,6 +154,18 @@ double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& 
                                                          : 0;
 }
 
+// A thread whose plies or filaments a cloth in equilibrium does not show.
+void note_equilibrium(const Thread& thread, Detail detail, const Fabric& fabric, Diagnostics& diagnostics) {
+  if (part_count(thread, detail) == 1) return;
+  std::string text = fmt::format(
+      "the yarns of thread '{}' are built as a whole: in a weave with `state` sections vary along "
+      "the yarns, and plies and filaments are not built",
+      thread.name);
+  diagnostics.add((detail == Detail::usual ? note(Kind::unsupported, std::move(text))
+                                           : warning(Kind::unsupported, std::move(text)))
+                      .placed(thread.place, fabric.file));
+}
+
 // A yarn of more filaments than are built without being asked for.
 void note_whole(const Thread& thread, Detail detail, const Fabric& fabric, Diagnostics& diagnostics) {
   if (detail != Detail::usual || thread.filaments.value_or(1) <= max_usual_filaments) return;
@@ -245,20 +257,23 @@ void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr
   const std::size_t count = construction.count();
   const Work plain{count, construction.data_points(), construction.longest()};
   if (!take_on(plain, place, diagnostics)) return;
+  const bool has_whole_yarns = construction.has_whole_yarns();
+  const auto parts_of = [&](std::size_t i) {
+    return has_whole_yarns ? 1 : part_count(construction.thread(i), options_.detail);
+  };
   Work more;  // than plain yarns
-  for (std::size_t i = 0; i < count; ++i)
-    more += in_parts({1, plain.points / count, 0}, part_count(construction.thread(i), options_.detail) - 1);
+  for (std::size_t i = 0; i < count; ++i) more += in_parts({1, plain.points / count, 0}, parts_of(i) - 1);
   if (more.yarns > 0 && !take_on(more, place, diagnostics)) return;
   std::set<const Thread*> seen;
   for (std::size_t i = 0; i < count; ++i)
     if (const Thread& thread = construction.thread(i); seen.insert(&thread).second)
-      note_whole(thread, options_.detail, *fabric_, diagnostics);
+      (has_whole_yarns ? note_equilibrium : note_whole)(thread, options_.detail, *fabric_, diagnostics);
   constructions_.push_back(std::make_unique<Made>(Made{std::move(*made), &item, place, kind, {}}));
   Entry entry;
   entry.made = constructions_.back().get();
   for (std::size_t i = 0; i < count; ++i) {
     entry.index = static_cast<std::uint32_t>(i);
-    add_entries(entry, part_count(construction.thread(i), options_.detail));
+    add_entries(entry, parts_of(i));
   }
 }
 

@@ -20,9 +20,9 @@ struct EquilibriumReport {
   std::vector<System> systems;
   // Fractions of the energy.
   double bending = 0, tension = 0, flattening = 0, compaction = 0;
-  int steps = 0;        // of Newton's method, all starts
-  double residual = 0;  // of the gradient, over its scale
-  int num_classes = 0;  // congruence classes of crossings
+  int steps = 0;         // of Newton's method, all starts
+  double residual = 0;   // of the gradient, over its scale
+  int num_classes = 0;   // congruence classes of crossings
   bool is_exact = true;  // false: the classes are those of neighbourhoods
 };
 

@@ -55,6 +55,8 @@ class Construction {
   [[nodiscard]] virtual Vec2 unit() const = 0;
   // What yarns that do the same are called together: warp, course, bar1, braider.
   [[nodiscard]] virtual std::string system(std::size_t index) const = 0;
+  // True: yarns are built whole, never as plies or filaments, since their sections vary along them.
+  [[nodiscard]] virtual bool has_whole_yarns() const { return false; }
   // Of a cloth in equilibrium.
   [[nodiscard]] virtual std::optional<EquilibriumReport> equilibrium() const { return std::nullopt; }
 };

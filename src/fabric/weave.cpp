@@ -208,7 +208,7 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
-  if (weave_.state) return prepare_equilibrium();
+  if (weave_.state) return prepare_equilibrium(diagnostics);
   const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
     if (!weave_.profile) {
       const std::optional<Bend> bend = natural_bend(crossed);
@@ -259,7 +259,8 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   return {};
 }
 
-// With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and yarns.
+// With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and
+// yarns.
 Message WeaveConstruction::jammed(const Message& failure) const {
   LooseCloth cloth{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
   const auto is_found = [&](const LooseCloth& changed, double yarns, const std::optional<double>& thickness) {
@@ -276,21 +277,22 @@ Message WeaveConstruction::jammed(const Message& failure) const {
       const double middle = 0.5 * (low + high);
       (is_found(cloth, 1.0, middle) ? high : low) = middle;
     }
-    return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
-                                             "{:.6g} {} at the least",
-                                             *weave_.thickness, name_of(fabric_.units), rounded_up(high),
-                                             name_of(fabric_.units)))
+    return error(Kind::geometry,
+                 fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
+                             "{:.6g} {} at the least",
+                             *weave_.thickness, name_of(fabric_.units), rounded_up(high),
+                             name_of(fabric_.units)))
         .placed(weave_.place);
   }
-  return error(Kind::geometry,
-               fmt::format("the cloth is jammed: {}; {}", failure.text,
-                           remedies_for(cloth, [&](const LooseCloth& changed, double yarns) {
-                             return is_found(changed, yarns, weave_.thickness);
-                           })))
+  return error(Kind::geometry, fmt::format("the cloth is jammed: {}; {}", failure.text,
+                                           remedies_for(cloth,
+                                                        [&](const LooseCloth& changed, double yarns) {
+                                                          return is_found(changed, yarns, weave_.thickness);
+                                                        })))
       .placed(weave_.place);
 }
 
-Status WeaveConstruction::prepare_equilibrium() {
+Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
   if (weave_.spacing == Weave::Spacing::relaxed) {
     const auto [picks, ends] = changes_between(drawdown_);
     relax_spacing(weft_, picks, weft_.widest + clearance_);
@@ -300,6 +302,18 @@ Status WeaveConstruction::prepare_equilibrium() {
       ClothInEquilibrium::find({&fabric_, &weave_, &warp_, &weft_, &drawdown_, clearance_});
   if (!found) return found.error().place.line == weave_.place.line ? jammed(found.error()) : found.error();
   equilibrium_ = std::move(*found);
+  std::set<const Thread*> told;
+  for (const System* system : {&warp_, &weft_})
+    for (const WovenThread& woven : system->threads)
+      if (!std::holds_alternative<yarn::Circle>(woven.section) &&
+          !std::holds_alternative<yarn::Ellipse>(woven.section) && told.insert(woven.thread).second)
+        diagnostics.add(
+            note(
+                Kind::geometry,
+                fmt::format("thread '{}' has ellipses for sections in equilibrium, of the area and the width "
+                            "over height that its section has at rest",
+                            woven.thread->name))
+                .placed(woven.thread->place, fabric_.file));
   for (System* system : {&warp_, &weft_}) {
     system->widest = equilibrium_->max_width(system == &weft_);
     system->thickest = equilibrium_->max_height(system == &weft_);

@@ -68,6 +68,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] Repeat repeat() const override;
   [[nodiscard]] Vec2 unit() const override { return {weft_.text->pitch, warp_.text->pitch}; }
   [[nodiscard]] std::string system(std::size_t index) const override;
+  [[nodiscard]] bool has_whole_yarns() const override { return equilibrium_.has_value(); }
   [[nodiscard]] std::optional<EquilibriumReport> equilibrium() const override {
     return equilibrium_ ? std::optional(equilibrium_->report()) : std::nullopt;
   }
@@ -98,7 +99,7 @@ class WeaveConstruction final : public Construction {
     return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
-  Status prepare_equilibrium();
+  Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
   Status prepare_leno();
   Status prepare_pucker(Diagnostics& diagnostics);

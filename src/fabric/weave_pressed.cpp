@@ -317,7 +317,8 @@ std::optional<double> least_thickness(const LooseCloth& cloth) {
 }
 
 std::string remedies_for(const LooseCloth& cloth) {
-  return remedies_for(cloth, [](const LooseCloth& changed, double) { return press_cloth(changed).has_value(); });
+  return remedies_for(cloth,
+                      [](const LooseCloth& changed, double) { return press_cloth(changed).has_value(); });
 }
 
 std::string remedies_for(const LooseCloth& cloth, const HasRoom& tried) {
@@ -342,7 +343,8 @@ std::string remedies_for(const LooseCloth& cloth, const HasRoom& tried) {
     const double pitch = is_warp ? warp_pitch : weft_pitch;
     const auto factor = least_factor(*wider, [&](double by) {
       return has_room(cloth,
-                      {is_warp ? shown_factor(true, by) : 1.0, is_warp ? 1.0 : shown_factor(false, by), 1.0}, tried);
+                      {is_warp ? shown_factor(true, by) : 1.0, is_warp ? 1.0 : shown_factor(false, by), 1.0},
+                      tried);
     });
     if (!factor) return std::nullopt;
     return fmt::format(

@@ -46,8 +46,8 @@ std::string pressing_of(const WovenThread& loose, const WovenThread& pressed, Un
 // own `thickness` asks for. Nothing where it cannot be pressed at all.
 std::optional<double> least_thickness(const LooseCloth& cloth);
 
-// For a cloth that has no room: by how much it is too dense, and three remedies, each of them tried by `has_room`,
-// which gets the cloth with other pitches or with yarns of `yarns` times the diameter.
+// For a cloth that has no room: by how much it is too dense, and three remedies, each of them tried by
+// `has_room`, which gets the cloth with other pitches or with yarns of `yarns` times the diameter.
 using HasRoom = std::function<bool(const LooseCloth& cloth, double yarns)>;
 std::string remedies_for(const LooseCloth& cloth, const HasRoom& has_room);
 // Of pressed yarns.

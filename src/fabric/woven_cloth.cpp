@@ -21,7 +21,9 @@ using mechanics::WovenSystem;
 constexpr double relaxed_tension = 0.05;
 constexpr double stiffness_of_solids = 100;
 
-WovenSystem system_of(bool is_weft) { return is_weft ? WovenSystem::weft : WovenSystem::warp; }
+WovenSystem system_of(bool is_weft) {
+  return is_weft ? WovenSystem::weft : WovenSystem::warp;
+}
 
 // A thread of the text as a yarn of the mechanics, lengths in file units.
 Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bool is_warp,
@@ -32,7 +34,8 @@ Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bo
   if (!twist) return twist.error();
   const bool is_solid = !*twist;
   const double mm = millimetres_per(units), area = yarn::area(woven.section, woven.size);
-  const bool has_size = thread.diameter || (thread.section && yarn::nominal_size(*thread.section).width > 0.0);
+  const bool has_size =
+      thread.diameter || (thread.section && yarn::nominal_size(*thread.section).width > 0.0);
   made.aspect = woven.size.width / woven.size.height;
   made.packing = constants.packing;
   if (is_solid) {
@@ -48,7 +51,8 @@ Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bo
     if (has_size && !is_solid) made.packing = std::min(made.fibre_area / area, made.max_packing);
     if (is_solid) made.fibre_area = area;
   } else {
-    if (!is_solid) made.packing = std::min(thread.size_packing().value_or(constants.packing), made.max_packing);
+    if (!is_solid)
+      made.packing = std::min(thread.size_packing().value_or(constants.packing), made.max_packing);
     made.fibre_area = made.packing * area;
   }
   return made;
@@ -65,8 +69,8 @@ std::vector<double> gaps_of(const System& system, int count) {
 
 Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
   mechanics::WovenCloth cloth;
-  const auto add = [&](const System& system, long long repeat, bool is_warp, std::vector<mechanics::WovenYarn>& yarns,
-                       std::vector<double>& gaps) -> Status {
+  const auto add = [&](const System& system, long long repeat, bool is_warp,
+                       std::vector<mechanics::WovenYarn>& yarns, std::vector<double>& gaps) -> Status {
     const auto count = static_cast<int>(std::lcm(repeat, system.repeat_of_threads()));
     for (int k = 0; k < count; ++k) {
       Result<mechanics::WovenYarn> yarn =
@@ -78,9 +82,11 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
     gaps = gaps_of(system, count);
     return {};
   };
-  if (Status added = add(*text.warp, text.drawdown->repeat_of_ends(), true, cloth.warps, cloth.warp_gaps); !added)
+  if (Status added = add(*text.warp, text.drawdown->repeat_of_ends(), true, cloth.warps, cloth.warp_gaps);
+      !added)
     return added.error();
-  if (Status added = add(*text.weft, text.drawdown->repeat_of_picks(), false, cloth.wefts, cloth.weft_gaps); !added)
+  if (Status added = add(*text.weft, text.drawdown->repeat_of_picks(), false, cloth.wefts, cloth.weft_gaps);
+      !added)
     return added.error();
   for (int pick = 0; pick < cloth.picks(); ++pick)
     for (int end = 0; end < cloth.ends(); ++end)
@@ -120,9 +126,11 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
   top_ = -1e300;
   bottom_ = 1e300;
   for (const bool is_weft : {false, true}) {
-    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(), crossings = is_weft ? cloth_.ends() : cloth_.picks();
+    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(),
+              crossings = is_weft ? cloth_.ends() : cloth_.picks();
     for (int yarn = 0; yarn < yarns; ++yarn) {
-      const nurbs::Curve line = unclamped(is_weft, yarn, 0, static_cast<long long>(crossings) * mechanics::spans_a_gap);
+      const nurbs::Curve line =
+          unclamped(is_weft, yarn, 0, static_cast<long long>(crossings) * mechanics::spans_a_gap);
       for (int quarter = 0; quarter < crossings * mechanics::spans_a_gap; ++quarter) {
         const auto size = equilibrium_.size(system_of(is_weft), yarn,
                                             static_cast<double>(quarter) / mechanics::spans_a_gap);
@@ -142,32 +150,36 @@ double ClothInEquilibrium::knot(bool is_weft, long long index) const {
 
 double ClothInEquilibrium::control_height(bool is_weft, long long yarn, long long index) const {
   const long long yarns = is_weft ? cloth_.picks() : cloth_.ends(),
-                  knots = mechanics::spans_a_gap * static_cast<long long>(is_weft ? cloth_.ends() : cloth_.picks());
+                  knots = mechanics::spans_a_gap *
+                          static_cast<long long>(is_weft ? cloth_.ends() : cloth_.picks());
   return equilibrium_.control_height(system_of(is_weft), static_cast<int>(wrapped(yarn, yarns)),
                                      static_cast<int>(wrapped(index, knots)));
 }
 
 // Over knots first .. last and two more at either side.
-nurbs::Curve ClothInEquilibrium::unclamped(bool is_weft, long long yarn, long long first, long long last) const {
+nurbs::Curve ClothInEquilibrium::unclamped(bool is_weft, long long yarn, long long first,
+                                           long long last) const {
   nurbs::Curve line;
   for (long long k = first - 3; k <= last + 3; ++k) line.knots.push_back(knot(is_weft, k));
   for (long long k = first - 1; k <= last + 1; ++k)
-    line.points.emplace_back(
-        (knot(is_weft, k - 1) + knot(is_weft, k) + knot(is_weft, k + 1)) / 3.0, 0.0,
-        control_height(is_weft, yarn, k));
+    line.points.emplace_back((knot(is_weft, k - 1) + knot(is_weft, k) + knot(is_weft, k + 1)) / 3.0, 0.0,
+                             control_height(is_weft, yarn, k));
   return line;
 }
 
 double ClothInEquilibrium::height(bool is_weft, long long yarn, long long crossing) const {
   const long long at = crossing * mechanics::spans_a_gap;
-  return nurbs::evaluate(unclamped(is_weft, yarn, at - 1, at + 1), knot(is_weft, at)).z() - 0.5 * (top_ + bottom_);
+  return nurbs::evaluate(unclamped(is_weft, yarn, at - 1, at + 1), knot(is_weft, at)).z() -
+         0.5 * (top_ + bottom_);
 }
 
 void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
                                Vec3 (*to_place)(double s, double z, double across)) const {
   constexpr int stations = 2 * mechanics::spans_a_gap;  // of sizes, from crossing to crossing
   const System& crossed = is_weft ? warp_ : weft_;
-  const auto crossing_near = [&](double s) { return static_cast<long long>(std::floor(s / crossed.text->pitch)); };
+  const auto crossing_near = [&](double s) {
+    return static_cast<long long>(std::floor(s / crossed.text->pitch));
+  };
   const long long first = crossing_near(from) - 2, last = crossing_near(to) + 2;
   nurbs::Curve line = nurbs::restricted(
       unclamped(is_weft, yarn, first * mechanics::spans_a_gap, last * mechanics::spans_a_gap), from, to);
@@ -203,16 +215,20 @@ double ClothInEquilibrium::packing(bool is_weft, long long yarn) const {
   double sum = 0.0;
   for (int half = 0; half < halves; ++half) {
     const auto size = equilibrium_.size(system_of(is_weft), static_cast<int>(own), 0.5 * half);
-    sum += yarns[own].fibre_area / yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
+    sum +=
+        yarns[own].fibre_area / yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
   }
   return sum / halves;
 }
 
 EquilibriumReport ClothInEquilibrium::report() const {
   EquilibriumReport made;
-  made.state = state_ == Weave::State::loom ? "loom" : state_ == Weave::State::relaxed ? "relaxed" : "finished";
+  made.state = state_ == Weave::State::loom      ? "loom"
+               : state_ == Weave::State::relaxed ? "relaxed"
+                                                 : "finished";
   for (const bool is_weft : {false, true}) {
-    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(), crossings = is_weft ? cloth_.ends() : cloth_.picks();
+    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(),
+              crossings = is_weft ? cloth_.ends() : cloth_.picks();
     EquilibriumReport::System system;
     system.name = is_weft ? "weft" : "warp";
     const double weight = 1.0 / (static_cast<double>(yarns) * crossings);

@@ -1,5 +1,5 @@
-// A weave in equilibrium (mechanics/woven.h): from the threads and pitches of a text to the mechanics, and back to
-// centre lines and sections.
+// A weave in equilibrium (mechanics/woven.h): from the threads and pitches of a text to the mechanics, and
+// back to centre lines and sections.
 #pragma once
 
 #include <string>
@@ -30,8 +30,8 @@ class ClothInEquilibrium {
   // Errors (geometry): of woven_cloth; no equilibrium (at the weave).
   static Result<ClothInEquilibrium> find(const ClothText& text);
 
-  // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with its
-  // section and its sizes. Yarns are numbered from 0, in both directions without end.
+  // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with
+  // its section and its sizes. Yarns are numbered from 0, in both directions without end.
   void shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
              Vec3 (*to_place)(double s, double z, double across)) const;
   // Height of a yarn's axis at a crossing.
@@ -44,7 +44,8 @@ class ClothInEquilibrium {
   [[nodiscard]] double packing(bool is_weft, long long yarn) const;
 
  private:
-  ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth, mechanics::WovenEquilibrium equilibrium);
+  ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth,
+                     mechanics::WovenEquilibrium equilibrium);
   [[nodiscard]] double knot(bool is_weft, long long index) const;  // of quarters of gaps along a yarn
   [[nodiscard]] double control_height(bool is_weft, long long yarn, long long index) const;
   [[nodiscard]] nurbs::Curve unclamped(bool is_weft, long long yarn, long long first, long long last) const;

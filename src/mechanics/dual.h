@@ -89,8 +89,8 @@ Dual<N> operator*(const Dual<N>& a, const Dual<N>& b) {
   for (std::size_t i = 0; i < N; ++i) {
     made.first[i] = a.value * b.first[i] + b.value * a.first[i];
     for (std::size_t j = 0; j <= i; ++j, ++k)
-      made.second[k] = a.value * b.second[k] + b.value * a.second[k] + a.first[i] * b.first[j] +
-                       a.first[j] * b.first[i];
+      made.second[k] =
+          a.value * b.second[k] + b.value * a.second[k] + a.first[i] * b.first[j] + a.first[j] * b.first[i];
   }
   return made;
 }

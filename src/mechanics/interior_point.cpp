@@ -102,7 +102,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The linear system of a step: positive definite by what is added to its diagonal.
 class StepSolver {
  public:
-
   // False: no multiple of the identity makes it definite.
   bool factorize(SymmetricSum& sum) {
     constexpr double smallest_shift = 1e-8;
@@ -228,9 +227,9 @@ class Solver {
                              std::abs(equality_gap(at_.x)));
     const VectorXd products = at_.slacks.cwiseProduct(at_.multipliers);
     at_.residual = std::max({largest(lagrangian_), largest(products)}) / scale_;
-    const double error = std::max({largest(lagrangian_) / scale_,
-                                   largest((products.array() - barrier_).matrix()) / scale_,
-                                   largest(missing_), std::abs(equality_gap(at_.x))});
+    const double error =
+        std::max({largest(lagrangian_) / scale_, largest((products.array() - barrier_).matrix()) / scale_,
+                  largest(missing_), std::abs(equality_gap(at_.x))});
     constexpr double closeness = 10.0;
     while (barrier_ > last_barrier && error <= closeness * barrier_) {
       barrier_ = std::max(last_barrier, std::min(0.2 * barrier_, std::pow(barrier_, 1.3)));
@@ -264,8 +263,7 @@ class Solver {
     double part = std::min(to_boundary(at_.slacks, ds),
                            options_.longest_step / std::max(options_.longest_step, dx.cwiseAbs().maxCoeff()));
     const double gap = missing_.cwiseAbs().sum() + std::abs(equality_gap(at_.x));
-    const double slope =
-        made_.gradient.dot(dx) - barrier_ * ds.cwiseQuotient(at_.slacks).sum();
+    const double slope = made_.gradient.dot(dx) - barrier_ * ds.cwiseQuotient(at_.slacks).sum();
     if (gap > 0.0) penalty_ = std::max(penalty_, 1.2 * std::max(0.0, slope) / gap + 1e-3);
     if (at_.multipliers.size() > 0)
       penalty_ = std::max(penalty_, 1.1 * std::min(1e6, (at_.multipliers + dm).cwiseAbs().maxCoeff()));

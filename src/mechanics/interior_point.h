@@ -93,8 +93,9 @@ void add_second(SymmetricSum& sum, const std::array<Form, N>& forms, const Dual<
     std::fill_n(weights[i].begin(), count, 0.0);
     std::fill_n(products[i].begin(), count, 0.0);
     for (std::size_t k = 0; k < static_cast<std::size_t>(forms[i].count); ++k)
-      weights[i][static_cast<std::size_t>(std::find(unknowns.begin(), unknowns.begin() + count, forms[i].index[k]) -
-                                          unknowns.begin())] += forms[i].weight[k];
+      weights[i][static_cast<std::size_t>(
+          std::find(unknowns.begin(), unknowns.begin() + count, forms[i].index[k]) - unknowns.begin())] +=
+          forms[i].weight[k];
   }
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < N; ++j) {
@@ -172,7 +173,7 @@ void add_row(SparseRows& rows, const std::array<Form, N>& forms, const Dual<N>& 
 }
 
 struct BarrierOptions {
-  double tolerance = 1e-10;   // of the gradient, the inequalities and the complementarity
+  double tolerance = 1e-10;  // of the gradient, the inequalities and the complementarity
   double first_barrier = 2e-3;
   double longest_step = 0.5;  // of any unknown
   int max_steps = 200;
@@ -188,8 +189,8 @@ struct Minimum {
   bool is_converged = false;
 };
 
-// Places of the matrix of a step and the order of its factorization: kept from one minimization to the next one of
-// the same problem.
+// Places of the matrix of a step and the order of its factorization: kept from one minimization to the next
+// one of the same problem.
 class BarrierWorkspace {
  public:
   explicit BarrierWorkspace(Eigen::Index num_unknowns);

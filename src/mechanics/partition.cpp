@@ -26,15 +26,17 @@ Partition numbered(const std::vector<Key>& keys) {
 
 }  // namespace
 
-Partition partition_by(const std::vector<int>& colors) { return numbered(colors); }
+Partition partition_by(const std::vector<int>& colors) {
+  return numbered(colors);
+}
 
 Partition refined(const Partition& partition, int rows, int columns) {
   std::vector<std::array<int, 5>> keys;
   keys.reserve(partition.class_of.size());
   const auto at = [&](int row, int column) {
-    return partition.class_of[static_cast<std::size_t>((row + rows) % rows) *
-                                  static_cast<std::size_t>(columns) +
-                              static_cast<std::size_t>((column + columns) % columns)];
+    return partition
+        .class_of[static_cast<std::size_t>((row + rows) % rows) * static_cast<std::size_t>(columns) +
+                  static_cast<std::size_t>((column + columns) % columns)];
   };
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)

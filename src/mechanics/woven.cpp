@@ -36,7 +36,8 @@ WovenCloth scaled(WovenCloth cloth, double by) {
 }
 
 // Minima of the inequalities that take part, until all others hold, too.
-Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_rounds, BarrierWorkspace& workspace) {
+Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_rounds,
+               BarrierWorkspace& workspace) {
   BarrierOptions options;
   options.tolerance = tolerance;
   int steps = at.steps;
@@ -112,9 +113,10 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
     if (found.is_converged && (!best || found.energy < best->energy * (1.0 - tie))) best = std::move(found);
   }
   if (!best)
-    return error(Kind::geometry,
-                 fmt::format("no equilibrium without overlap was found (residual {:.1e}, overlap {:.2g} of a yarn)", residual,
-                             overlap));
+    return error(
+        Kind::geometry,
+        fmt::format("no equilibrium without overlap was found (residual {:.1e}, overlap {:.2g} of a yarn)",
+                    residual, overlap));
   best->steps = steps;
   return WovenEquilibrium(problem, std::move(*best), scale);
 }

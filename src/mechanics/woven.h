@@ -1,6 +1,7 @@
-// Woven cloth in equilibrium: centre lines and sections of least energy without overlap. Sources: J. W. S. Hearle, W. J.
-// Shanahan, An energy method for calculations in fabric mechanics, J. Text. Inst. 69 (1978) 81 and 92; F. T. Peirce,
-// The geometry of cloth structure, J. Text. Inst. 28 (1937) T45; C. M. van Wyk, J. Text. Inst. 37 (1946) T285.
+// Woven cloth in equilibrium: centre lines and sections of least energy without overlap. Sources: J. W. S.
+// Hearle, W. J. Shanahan, An energy method for calculations in fabric mechanics, J. Text. Inst. 69 (1978) 81
+// and 92; F. T. Peirce, The geometry of cloth structure, J. Text. Inst. 28 (1937) T45; C. M. van Wyk, J.
+// Text. Inst. 37 (1946) T285.
 #pragma once
 
 #include <memory>
@@ -15,13 +16,14 @@ class WovenEquilibrium {
   WovenEquilibrium(std::shared_ptr<const WovenProblem> problem, Minimum minimum, double scale)
       : problem_(std::move(problem)), minimum_(std::move(minimum)), scale_(scale) {}
 
-  // The control value of a centre line, in the cloth's unit: `knot` = 4 * (number of the crossing) at crossings, three
-  // more between them. Cubic B-splines; the knots divide each gap evenly.
+  // The control value of a centre line, in the cloth's unit: `knot` = 4 * (number of the crossing) at
+  // crossings, three more between them. Cubic B-splines; the knots divide each gap evenly.
   [[nodiscard]] double control_height(WovenSystem system, int yarn, int knot) const;
   struct Size {
     double width = 0, height = 0;
   };
-  // Full sizes of the section (an ellipse), in the cloth's unit, anywhere along a yarn: 0 at crossing 0, 1 at the next.
+  // Full sizes of the section (an ellipse), in the cloth's unit, anywhere along a yarn: 0 at crossing 0, 1 at
+  // the next.
   [[nodiscard]] Size size(WovenSystem system, int yarn, double crossings) const;
 
   // Mean of a system's yarns, (L - p) / p.

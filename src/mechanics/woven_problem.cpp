@@ -16,13 +16,13 @@ using std::numbers::pi;
 
 namespace {
 
-// Unknowns of a crossing: heights of the warp up to the next weft and of the weft up to the next warp, half width and
-// half height of the warp here and half way to the next weft, of the weft likewise.
+// Unknowns of a crossing: heights of the warp up to the next weft and of the weft up to the next warp, half
+// width and half height of the warp here and half way to the next weft, of the weft likewise.
 constexpr int block_size = 2 * spans_a_gap + 8;
 constexpr int places_a_half_gap = 8, corner_places = 4;
-constexpr double steepest = 2.2;          // slope of a centre line, 66 degrees
+constexpr double steepest = 2.2;  // slope of a centre line, 66 degrees
 constexpr double least_half_height = 0.02;
-constexpr double hold = 1e-5;             // of yarns that nothing holds
+constexpr double hold = 1e-5;  // of yarns that nothing holds
 
 template <class T>
 int color_of(std::map<T, int>& known, const T& key) {
@@ -59,15 +59,18 @@ void add_scaled(Form& sum, const Form& form, double by) {
     if (form.weight[k] != 0.0) sum.add(form.index[k], by * form.weight[k]);
 }
 
-double smooth_step(double t) { return t * t * (3.0 - 2.0 * t); }
+double smooth_step(double t) {
+  return t * t * (3.0 - 2.0 * t);
+}
 
 }  // namespace
 
 WovenProblem::WovenProblem(const WovenCloth& scaled, int max_classes)
     : cloth_(scaled), classes_(classes_of(scaled, max_classes)) {
   num_unknowns_ = static_cast<Eigen::Index>(classes_.count()) * block_size;
-  const Partition groups =
-      classes_.is_exact ? classes_ : refined(refined(classes_, cloth_.picks(), cloth_.ends()), cloth_.picks(), cloth_.ends());
+  const Partition groups = classes_.is_exact ? classes_
+                                             : refined(refined(classes_, cloth_.picks(), cloth_.ends()),
+                                                       cloth_.picks(), cloth_.ends());
   // Of all crossings, times the number of classes: what a class weighs does not depend on how many there are.
   const double crossings = static_cast<double>(classes_.class_of.size()) / classes_.count();
   for (int group = 0; group < groups.count(); ++group) {
@@ -167,8 +170,11 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
     for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
       const double along = share * 0.5 * rule.weights[k] * length / spans_a_gap, weight = area * along;
       const Point here = point(system, at, (span + 0.5 + 0.5 * rule.nodes[k]) / spans_a_gap);
-      paths_.push_back(
-          {{here.slope, here.curvature}, weight * constants.bending, weight * tension(system), along, system});
+      paths_.push_back({{here.slope, here.curvature},
+                        weight * constants.bending,
+                        weight * tension(system),
+                        along,
+                        system});
       sections_.push_back({{here.half_width, here.half_height},
                            weight * constants.flattening * own.stiffness,
                            weight * constants.compaction,
@@ -177,9 +183,10 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
                            area});
     }
   for (int half = 0; half < 2; ++half) {
-    // Fibres leave the axis where the section changes: by the mean of the squares of their slopes, a quarter of that
-    // at the surface; the square of the slope of a smooth step is 6/5 in the mean.
-    const int from = width_at(system, at.pick, at.end, half), to = width_at(system, at.pick, at.end, half + 1);
+    // Fibres leave the axis where the section changes: by the mean of the squares of their slopes, a quarter
+    // of that at the surface; the square of the slope of a smooth step is 6/5 in the mean.
+    const int from = width_at(system, at.pick, at.end, half),
+              to = width_at(system, at.pick, at.end, half + 1);
     for (int size = 0; size < 2; ++size) {
       SquareTerm change;
       change.form.add(from + size, -1.0);
@@ -217,25 +224,29 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
   }
 }
 
-// A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other, and where they
-// change sides they pass at one height.
+// A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other,
+// and where they change sides they pass at one height.
 void WovenProblem::add_beside(WovenSystem system, Crossing at) {
   constexpr int places = 2 * spans_a_gap;
   const WovenSystem other = system == WovenSystem::warp ? WovenSystem::weft : WovenSystem::warp;
   const Crossing next = along(other, at, 1);
   // How far the yarn is above the next one: by no side, or by one up or down.
   const auto above = [&](int crossing) {
-    return (warp_on_top(along(system, at, crossing)) ? 1 : 0) - (warp_on_top(along(system, next, crossing)) ? 1 : 0);
+    return (warp_on_top(along(system, at, crossing)) ? 1 : 0) -
+           (warp_on_top(along(system, next, crossing)) ? 1 : 0);
   };
-  const bool is_level_here = above(0) == 0, is_level_next = above(1) == 0, change_sides = above(0) * above(1) < 0;
+  const bool is_level_here = above(0) == 0, is_level_next = above(1) == 0,
+             change_sides = above(0) * above(1) < 0;
   for (int place = 0; place < places; ++place) {
     const double gaps = static_cast<double>(place) / places;
     const Point a = point(system, at, gaps), b = point(system, next, gaps);
-    const bool is_level = 2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
+    const bool is_level =
+        2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
     if (!is_level || place % spans_a_gap != 0) {
-      besides_.push_back({{a.z, a.slope, a.half_width, a.half_height, b.z, b.slope, b.half_width, b.half_height},
-                          gap(other, at, 0),
-                          cloth_.clearance});
+      besides_.push_back(
+          {{a.z, a.slope, a.half_width, a.half_height, b.z, b.slope, b.half_width, b.half_height},
+           gap(other, at, 0),
+           cloth_.clearance});
     } else {
       Linear apart;
       apart.forms[0].constant = gap(other, at, 0) - cloth_.clearance;
@@ -270,7 +281,9 @@ void WovenProblem::add_contacts(Crossing at) {
       warp_points[d].push_back(point(WovenSystem::warp, at, gaps));
       weft_points[d].push_back(point(WovenSystem::weft, at, gaps));
     }
-  const auto length = [&](WovenSystem system, std::size_t d) { return d == 0 ? -gap(system, at, -1) : gap(system, at, 0); };
+  const auto length = [&](WovenSystem system, std::size_t d) {
+    return d == 0 ? -gap(system, at, -1) : gap(system, at, 0);
+  };
   const auto add = [&](std::size_t warp_side, int warp_place, std::size_t weft_side, int weft_place) {
     const Point &a = warp_points[warp_side][static_cast<std::size_t>(warp_place)],
                 &b = weft_points[weft_side][static_cast<std::size_t>(weft_place)];

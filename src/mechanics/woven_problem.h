@@ -1,10 +1,11 @@
-// The energy of a woven cloth and what its yarns leave each other free, as a problem with inequalities. All lengths
-// are ratios to the square root of the yarns' mean fibre area, all energies to the tension of a finished cloth
-// times that area.
+// The energy of a woven cloth and what its yarns leave each other free, as a problem with inequalities. All
+// lengths are ratios to the square root of the yarns' mean fibre area, all energies to the tension of a
+// finished cloth times that area.
 //
 // A centre line is a cubic B-spline over four spans from crossing to crossing, a section an ellipse that is
 // given at crossings and half way between them, with smooth steps from one to the next. Crossings of a class
-// (partition.h) have the same unknowns; terms are written once for crossings with neighbours of the same classes.
+// (partition.h) have the same unknowns; terms are written once for crossings with neighbours of the same
+// classes.
 #pragma once
 
 #include <array>
@@ -36,8 +37,8 @@ struct WovenCloth {
   std::vector<double> warp_gaps, weft_gaps;  // from warp k to the next one; from weft k to the next one
   std::vector<char> warp_on_top;             // picks x ends: 1, or 0
   double warp_tension = 1, weft_tension = 1;
-  double clearance = 0;             // between yarns
-  std::optional<double> thickness;  // between plates, at most
+  double clearance = 0;              // between yarns
+  std::optional<double> thickness;   // between plates, at most
   std::optional<double> warp_share;  // of the waves of both systems, 0 .. 1
   WovenConstants constants;
   [[nodiscard]] int ends() const { return static_cast<int>(warps.size()); }
@@ -54,10 +55,11 @@ class WovenProblem final : public BarrierProblem {
   // `scaled`: lengths already in ratios.
   WovenProblem(const WovenCloth& scaled, int max_classes);
 
-  // Unknowns at which yarns rise by these waves (of the warp: its share of both), sections at rest times `size`.
+  // Unknowns at which yarns rise by these waves (of the warp: its share of both), sections at rest times
+  // `size`.
   [[nodiscard]] Eigen::VectorXd start(double warp_share) const;
-  // Which inequalities take part: all that are not far from touching. True: one has entered that is violated by more
-  // than `tolerance`, or one that no longer holds has left. Multipliers and slacks follow.
+  // Which inequalities take part: all that are not far from touching. True: one has entered that is violated
+  // by more than `tolerance`, or one that no longer holds has left. Multipliers and slacks follow.
   bool update(Minimum& at, double tolerance);
   // Which take part; empty: as in the beginning.
   [[nodiscard]] const std::vector<char>& active() const { return is_active_; }
@@ -78,7 +80,8 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] const Partition& classes() const { return classes_; }
   // Places of unknowns. `knot`: from the crossing, spans_a_gap a gap. `half`: 2 a gap.
   [[nodiscard]] int height(WovenSystem system, int pick, int end, int knot) const;
-  [[nodiscard]] int width_at(WovenSystem system, int pick, int end, int half) const;  // half; the next: half the height
+  [[nodiscard]] int width_at(WovenSystem system, int pick, int end,
+                             int half) const;  // half; the next: half the height
 
  private:
   struct Point {  // of a centre line, with what its section is there

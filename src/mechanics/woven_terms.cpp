@@ -14,8 +14,12 @@ using std::numbers::pi;
 
 namespace {
 
-double square(double value) { return value * value; }
-double reciprocal(double value) { return 1.0 / value; }
+double square(double value) {
+  return value * value;
+}
+double reciprocal(double value) {
+  return 1.0 / value;
+}
 using std::log;
 using std::pow;
 using std::sqrt;
@@ -34,17 +38,17 @@ template <class T, class Term>
 T flattening_of(const Term& term, const std::array<T, 2>& v) {
   return 0.5 * term.flattening * square(log(v[0] * reciprocal(v[1])) - term.log_aspect);
 }
-// Work of the pressure k ((f / f0)^3 - 1) on a section with fibre fraction f (C. M. van Wyk, J. Text. Inst. 37
-// (1946) T285).
+// Work of the pressure k ((f / f0)^3 - 1) on a section with fibre fraction f (C. M. van Wyk, J. Text. Inst.
+// 37 (1946) T285).
 template <class T, class Term>
 T compaction_of(const Term& term, const std::array<T, 2>& v) {
   const T area = pi * v[0] * v[1] * (term.packing / term.fibre_area);  // over that at rest
-  const T fraction = reciprocal(area);                                // over that at rest
+  const T fraction = reciprocal(area);                                 // over that at rest
   return term.compaction / term.packing * (0.5 * square(fraction) + area - 1.5);
 }
 
-// The distance of the planes that touch both yarns and are parallel to both centre lines, times the length of the
-// normal (-u', -v', 1): what is free between them.
+// The distance of the planes that touch both yarns and are parallel to both centre lines, times the length of
+// the normal (-u', -v', 1): what is free between them.
 template <class T, class Place>
 T gap_of(const Place& place, const std::array<T, 8>& v) {
   const auto& [u, du, width, height, w, dw, weft_width, weft_height] = v;
@@ -54,8 +58,8 @@ T gap_of(const Place& place, const std::array<T, 8>& v) {
          sqrt(square(weft_width) * uu + square(weft_height) * (ww + 1.0)) -
          place.clearance * sqrt(uu + ww + 1.0);
 }
-// Ellipses side by side, as they are cut across the cloth: how far their axes lie apart, over the ellipse of the
-// sum of their half sizes.
+// Ellipses side by side, as they are cut across the cloth: how far their axes lie apart, over the ellipse of
+// the sum of their half sizes.
 template <class T, class Place>
 T beside_of(const Place& place, const std::array<T, 8>& v) {
   const T width = v[2] + v[6] + place.clearance,
@@ -73,9 +77,8 @@ void WovenProblem::for_candidates(const Use& use) const {
   for (const Linear& p : linears_) use(p.forms, [](const auto& v) { return v[0]; });
   for (const Beside& p : besides_) use(p.forms, [&](const auto& v) { return beside_of(p, v); });
   for (const Fold& p : folds_)
-    use(p.forms, [&](const auto& v) {
-      return pow(square(v[0]) + 1.0, 1.5) - fold_reserve * p.side * v[1] * v[2];
-    });
+    use(p.forms,
+        [&](const auto& v) { return pow(square(v[0]) + 1.0, 1.5) - fold_reserve * p.side * v[1] * v[2]; });
   for (const Contact& p : contacts_) use(p.forms, [&](const auto& v) { return gap_of(p, v); });
 }
 
@@ -121,7 +124,8 @@ WovenEnergy WovenProblem::weighted_energy(const VectorXd& x) const {
 
 WovenEnergy WovenProblem::energy(const VectorXd& x) const {
   WovenEnergy made = weighted_energy(x);
-  for (double* part : {&made.bending, &made.tension, &made.flattening, &made.compaction}) *part /= classes_.count();
+  for (double* part : {&made.bending, &made.tension, &made.flattening, &made.compaction})
+    *part /= classes_.count();
   return made;
 }
 
@@ -194,7 +198,8 @@ double WovenProblem::worst(const VectorXd& x) const {
     const std::size_t index = k++;
     if (index >= first_contact) {
       const Contact& contact = contacts_[index - first_contact];
-      if (contact.warp_place > reach[contact.warp_run] || contact.weft_place > reach[contact.weft_run]) return;
+      if (contact.warp_place > reach[contact.warp_run] || contact.weft_place > reach[contact.weft_run])
+        return;
     }
     least = std::min(least, static_cast<double>(function(values_of(forms, x))));
   });
@@ -219,7 +224,8 @@ bool WovenProblem::update(Minimum& at, double tolerance) {
     bool is_valid = true;
     if (index >= first_contact) {
       const Contact& contact = contacts_[index - first_contact];
-      is_valid = contact.warp_place <= reach[contact.warp_run] && contact.weft_place <= reach[contact.weft_run];
+      is_valid =
+          contact.warp_place <= reach[contact.warp_run] && contact.weft_place <= reach[contact.weft_run];
     }
     const bool is_pressing = was_active && at.multipliers[old] > tolerance;
     bool is_active = is_valid && (was_active || value < near);

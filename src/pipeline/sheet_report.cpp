@@ -62,28 +62,21 @@ Json thread_json(const fabric::ThreadSheet& thread) {
   return json;
 }
 
-Json equilibrium_json(const fabric::EquilibriumReport& found) {
-  Json json;
-  json["state"] = std::string(found.state);
-  for (const auto& system : found.systems)
-    json["systems"][std::string(system.name)] = {
-        {"width", system.width},
-        {"height", system.height},
-        {"width_between", system.width_between},
-        {"height_between", system.height_between},
-        {"packing_fraction", system.packing},
-        {"crimp", system.crimp},
-        {"take_up", system.take_up()},
-    };
-  json["energy"] = {{"bending", found.bending},
-                    {"tension", found.tension},
-                    {"flattening", found.flattening},
-                    {"compaction", found.compaction}};
-  json["steps"] = found.steps;
+void add_equilibrium(const fabric::EquilibriumReport& found, Json& json) {
+  for (const auto& system : found.systems) {
+    Json& of = json["systems"][std::string(system.name)];
+    of["width"] = system.width;
+    of["height"] = system.height;
+    of["width_between"] = system.width_between;
+    of["height_between"] = system.height_between;
+    of["packing_fraction"] = system.packing;
+  }
+  json["bending_fraction"] = found.bending;
+  json["tension_fraction"] = found.tension;
+  json["flattening_fraction"] = found.flattening;
+  json["compaction_fraction"] = found.compaction;
+  json["newton_steps"] = found.steps;
   json["residual"] = found.residual;
-  json["classes"] = found.num_classes;
-  json["exact"] = found.is_exact;
-  return json;
 }
 
 Json sheet_json(const fabric::Sheet& sheet) {
@@ -105,7 +98,7 @@ Json sheet_json(const fabric::Sheet& sheet) {
   put("repeat_y", known(sheet.repeat_y));
   for (const fabric::SystemSheet& system : sheet.systems)
     json["systems"][system.name] = system_json(system, sheet.is_per_metre());
-  if (sheet.equilibrium) json["equilibrium"] = equilibrium_json(*sheet.equilibrium);
+  if (sheet.equilibrium) add_equilibrium(*sheet.equilibrium, json);
   for (const fabric::ThreadSheet& thread : sheet.threads) json["threads"][thread.name] = thread_json(thread);
   return json;
 }
@@ -158,13 +151,15 @@ std::string threads_table(const fabric::Sheet& sheet) {
 }
 
 std::string equilibrium_text(const fabric::EquilibriumReport& found) {
-  std::string text = line("equilibrium", fmt::format("state {}; {} Newton steps, residual {:.1e}", found.state,
-                                                     found.steps, found.residual));
-  text += line("energy", fmt::format("bending {:.0f} %, tension {:.0f} %, flattening {:.0f} %, compaction {:.0f} %",
-                                     100 * found.bending, 100 * found.tension, 100 * found.flattening,
-                                     100 * found.compaction));
+  std::string text = line("equilibrium", fmt::format("state {}; {} Newton steps, residual {:.1e}",
+                                                     found.state, found.steps, found.residual));
+  text += line(
+      "energy",
+      fmt::format("bending {:.0f} %, tension {:.0f} %, flattening {:.0f} %, compaction {:.0f} %",
+                  100 * found.bending, 100 * found.tension, 100 * found.flattening, 100 * found.compaction));
   if (!found.is_exact)
-    text += line("", fmt::format("crossings in {} classes of equal neighbourhoods: approximate", found.num_classes));
+    text += line(
+        "", fmt::format("crossings in {} classes of equal neighbourhoods: approximate", found.num_classes));
   Table table({"system", "section at crossings, mm", "between", "packing", "crimp %", "take-up %"});
   const auto size = [](double width, double height) { return fmt::format("{:.4g} x {:.4g}", width, height); };
   for (const auto& system : found.systems)

@@ -33,8 +33,8 @@ TEST(Dual, DerivativesAgreeWithCentralDifferences) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(value.first[i], (shifted(i, step, i, 0) - shifted(i, -step, i, 0)) / (2 * step), 1e-7);
     for (std::size_t j = 0; j < 3; ++j) {
-      const double second = (shifted(i, step, j, step) - shifted(i, step, j, -step) - shifted(i, -step, j, step) +
-                             shifted(i, -step, j, -step)) /
+      const double second = (shifted(i, step, j, step) - shifted(i, step, j, -step) -
+                             shifted(i, -step, j, step) + shifted(i, -step, j, -step)) /
                             (4 * step * step);
       EXPECT_NEAR(value.second_at(i, j), second, 1e-6);
     }

@@ -18,7 +18,9 @@ using Function = std::function<Dual<2>(const std::array<Dual<2>, 2>&)>;
 class SmallProblem final : public BarrierProblem {
  public:
   SmallProblem(Function function, std::vector<Function> inequalities, VectorXd equality = {})
-      : function_(std::move(function)), inequalities_(std::move(inequalities)), equality_(std::move(equality)) {
+      : function_(std::move(function)),
+        inequalities_(std::move(inequalities)),
+        equality_(std::move(equality)) {
     for (int i = 0; i < 2; ++i) forms_[static_cast<std::size_t>(i)].add(i, 1.0);
   }
   [[nodiscard]] Eigen::Index num_unknowns() const override { return 2; }
@@ -70,8 +72,8 @@ TEST(InteriorPoint, NearestPointOfAHalfPlane) {
 }
 
 TEST(InteriorPoint, RosenbrockInADisk) {
-  // (1 - x)^2 + 100 (y - x^2)^2 with x^2 + y^2 <= 1: 0.0456748 at (0.786415, 0.617698), as published with many
-  // solvers' manuals; the gradient is a multiple of the disk's there.
+  // (1 - x)^2 + 100 (y - x^2)^2 with x^2 + y^2 <= 1: 0.0456748 at (0.786415, 0.617698), as published with
+  // many solvers' manuals; the gradient is a multiple of the disk's there.
   const SmallProblem problem(
       [](const auto& v) { return square(v[0] * -1.0 + 1.0) + 100.0 * square(v[1] - square(v[0])); },
       {[](const auto& v) { return (square(v[0]) + square(v[1])) * -1.0 + 1.0; }});
@@ -83,7 +85,8 @@ TEST(InteriorPoint, RosenbrockInADisk) {
 }
 
 TEST(InteriorPoint, WithoutInequalitiesItIsNewton) {
-  const SmallProblem problem([](const auto& v) { return square(v[0] - 2.0) + 3.0 * square(v[1] + v[0]); }, {});
+  const SmallProblem problem([](const auto& v) { return square(v[0] - 2.0) + 3.0 * square(v[1] + v[0]); },
+                             {});
   const Minimum found = solve(problem, 0.1, 0.1);
   ASSERT_TRUE(found.is_converged);
   EXPECT_NEAR(found.x[0], 2.0, 1e-9);

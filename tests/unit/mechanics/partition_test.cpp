@@ -23,21 +23,21 @@ TEST(Partition, PlainWeaveHasTwoClassesOfAnySize) {
 }
 
 TEST(Partition, ATwillHasAClassForEachStepOfItsRepeat) {
-  const Partition found =
-      stable_partition(colors(4, 4, [](int row, int column) { return (column - row + 4) % 4 < 2 ? 1 : 0; }), 4, 4, 100);
+  const Partition found = stable_partition(
+      colors(4, 4, [](int row, int column) { return (column - row + 4) % 4 < 2 ? 1 : 0; }), 4, 4, 100);
   EXPECT_EQ(found.count(), 4);
   for (const int size : found.sizes) EXPECT_EQ(size, 4);
 }
 
 TEST(Partition, OneOtherCrossingTellsAllApart) {
-  const Partition found =
-      stable_partition(colors(5, 7, [](int row, int column) { return row == 2 && column == 3 ? 1 : 0; }), 5, 7, 100);
+  const Partition found = stable_partition(
+      colors(5, 7, [](int row, int column) { return row == 2 && column == 3 ? 1 : 0; }), 5, 7, 100);
   EXPECT_EQ(found.count(), 35);
 }
 
 TEST(Partition, StopsBeforeTooManyClasses) {
-  const Partition found =
-      stable_partition(colors(5, 7, [](int row, int column) { return row == 2 && column == 3 ? 1 : 0; }), 5, 7, 10);
+  const Partition found = stable_partition(
+      colors(5, 7, [](int row, int column) { return row == 2 && column == 3 ? 1 : 0; }), 5, 7, 10);
   EXPECT_FALSE(found.is_exact);
   EXPECT_LE(found.count(), 10);
   EXPECT_EQ(std::accumulate(found.sizes.begin(), found.sizes.end(), 0), 35);

@@ -1,5 +1,5 @@
-// Cloth in equilibrium against what is known of it: derivatives by differences, units, quarter turns, Peirce's
-// geometry of rigid wires, plates.
+// Cloth in equilibrium against what is known of it: derivatives by differences, units, quarter turns,
+// Peirce's geometry of rigid wires, plates.
 #include "mechanics/woven.h"
 
 #include <gtest/gtest.h>
@@ -124,7 +124,8 @@ TEST(Woven, IsTheSameWithOtherLastDigits) {
   WovenCloth other = cloth;
   for (double& gap : other.warp_gaps) gap *= 1.0 + 1e-9;
   for (WovenYarn& yarn : other.wefts) yarn.fibre_area *= 1.0 - 1e-9;
-  EXPECT_LT(largest_difference(numbers_of(found(cloth), cloth, 1.0), numbers_of(found(other), other, 1.0)), 1e-8);
+  EXPECT_LT(largest_difference(numbers_of(found(cloth), cloth, 1.0), numbers_of(found(other), other, 1.0)),
+            1e-8);
 }
 
 TEST(Woven, AQuarterTurnExchangesTheSystems) {
@@ -143,8 +144,8 @@ TEST(Woven, AQuarterTurnExchangesTheSystems) {
   const WovenEquilibrium a = found(cloth), b = found(turned);
   for (int yarn = 0; yarn < cloth.ends(); ++yarn)
     for (int knot = 0; knot < spans_a_gap * cloth.picks(); ++knot)
-      EXPECT_NEAR(a.control_height(WovenSystem::warp, yarn, knot), -b.control_height(WovenSystem::weft, yarn, knot),
-                  1e-8);
+      EXPECT_NEAR(a.control_height(WovenSystem::warp, yarn, knot),
+                  -b.control_height(WovenSystem::weft, yarn, knot), 1e-8);
   EXPECT_NEAR(a.energy().sum(), b.energy().sum(), 1e-9);
 }
 
@@ -196,9 +197,10 @@ TEST(Woven, TensionMovesTheWavesToTheOtherSystem) {
 TEST(Woven, PlatesPressTheClothToItsThickness) {
   WovenCloth cloth = cloth_of(plain);
   const auto top_of = [](const WovenEquilibrium& equilibrium, WovenSystem system) {
-    const double height = (equilibrium.control_height(system, 0, -1) + 4.0 * equilibrium.control_height(system, 0, 0) +
-                           equilibrium.control_height(system, 0, 1)) /
-                          6.0;
+    const double height =
+        (equilibrium.control_height(system, 0, -1) + 4.0 * equilibrium.control_height(system, 0, 0) +
+         equilibrium.control_height(system, 0, 1)) /
+        6.0;
     return std::abs(height) + 0.5 * equilibrium.size(system, 0, 0.0).height;
   };
   const WovenEquilibrium free = found(cloth);
@@ -220,7 +222,8 @@ TEST(Woven, TheWarpHasTheShareOfTheWavesThatIsAskedFor) {
       const double side = cloth.warp_on_top[static_cast<std::size_t>(3 * pick + end)] != 0 ? 1.0 : -1.0;
       const auto height = [&](WovenSystem system, int yarn, int crossing) {
         const int knot = spans_a_gap * crossing;
-        return (result.control_height(system, yarn, knot - 1) + 4.0 * result.control_height(system, yarn, knot) +
+        return (result.control_height(system, yarn, knot - 1) +
+                4.0 * result.control_height(system, yarn, knot) +
                 result.control_height(system, yarn, knot + 1)) /
                6.0;
       };

@@ -1,0 +1,146 @@
+"""Weaves with a state, from outside: the same in every unit, sound, flat where they should be, jammed with remedies that work."""
+
+import json
+import math
+import re
+import unittest
+
+from program import Case, SAMPLES
+
+COTTON = """fabric 1
+units {unit}
+thread cotton
+  tex {tex}
+  density 1.52
+  packing 0.6
+{more}end
+weave
+  warp  cotton 8 pitch {warp!r}
+  weft  cotton 8 pitch {weft!r}
+  draft {draft}
+  state {state}
+{statement}end
+"""
+MILLIMETRES = {"mm": 1, "um": 1e-3, "cm": 10, "m": 1000, "in": 25.4}
+
+
+def cotton(unit="mm", tex=20, warp=0.34, weft=0.4, draft="twill 2/1", state="finished", statement="", more=""):
+    size = MILLIMETRES[unit]
+    return COTTON.format(
+        unit=unit, tex=tex, warp=warp / size, weft=weft / size, draft=draft, state=state, statement=statement, more=more
+    )
+
+
+class Equilibrium(Case):
+    def sheet(self, text):
+        path = self.folder / "cloth.txt"
+        path.write_text(text)
+        return json.loads(self.succeeds("info", path, "--json").stdout)["inputs"][0]["sheets"]["weave"]
+
+    def failure(self, text):
+        path = self.folder / "cloth.txt"
+        path.write_text(text)
+        return self.fails(1, "info", path)
+
+    def is_sound(self, text):
+        path = self.folder / "cloth.txt"
+        path.write_text(text)
+        self.succeeds("check", path)
+
+    def test_is_the_same_in_five_units(self):
+        for changes in (
+            {},
+            {"draft": "satin 5", "warp": 0.21, "weft": 0.3, "state": "loom"},
+            {"draft": "basket 2/2", "state": "relaxed"},
+        ):
+            expected = self.sheet(cotton(**changes))
+            for unit in MILLIMETRES:
+                found = self.sheet(cotton(unit, **changes))
+                for system in ("warp", "weft"):
+                    for what, value in expected["systems"][system].items():
+                        self.assertLess(
+                            abs(found["systems"][system][what] / value - 1), 1e-7, (unit, changes, system, what)
+                        )
+
+    def test_crimp_is_that_of_the_surfaces(self):
+        """What the equilibrium says of its own splines, and what the sheet measures on the built yarns."""
+        for state in ("loom", "relaxed", "finished"):
+            path = self.folder / "cloth.txt"
+            path.write_text(cotton(state=state))
+            said = self.succeeds("info", path).stdout
+            measured = self.sheet(cotton(state=state))["systems"]
+            for system in ("warp", "weft"):
+                crimp = re.search(rf"^  {system} .* x .* x .* (\S+) +\S+$", said, re.MULTILINE)[1]
+                self.assertAlmostEqual(float(crimp) / 100, measured[system]["crimp"], delta=3e-4)
+
+    def test_states(self):
+        """On the loom wefts are nearly straight; under little tension yarns are rounder than in the finished cloth."""
+        loom, relaxed, finished = (
+            self.sheet(cotton(state=state, draft="plain"))["systems"] for state in ("loom", "relaxed", "finished")
+        )
+        self.assertGreater(loom["warp"]["crimp"], 2 * loom["weft"]["crimp"])
+        self.assertGreater(loom["warp"]["crimp"], finished["warp"]["crimp"])
+        self.assertLess(loom["weft"]["crimp"], finished["weft"]["crimp"])
+        roundness = [system["warp"]["height"] / system["warp"]["width"] for system in (relaxed, finished)]
+        self.assertGreater(*roundness)
+
+    def test_twist_decides_how_flat(self):
+        """Height over width in a relaxed plain cloth of K 0.9: 0.35 without twist, 0.86 at 4,600 (Afrashteh et al. 2013)."""
+        pitch = 2 * 2 * math.sqrt(30 / 1500 / 0.6 / math.pi) / 0.9
+
+        def ratio(more):
+            text = cotton(tex=30, warp=pitch, weft=pitch, draft="plain", state="relaxed", more=more)
+            system = self.sheet(text)["systems"]["warp"]
+            return system["height"] / system["width"]
+
+        self.assertAlmostEqual(ratio("  filaments 100\n"), 0.35, delta=0.1)
+        self.assertAlmostEqual(ratio(f"  twist Z {4600 / math.sqrt(30):.0f}/m\n"), 0.86, delta=0.1)
+
+    def test_tows_are_flat(self):
+        tow = self.sheet((SAMPLES / "weave_tow_twill.txt").read_text())
+        for system in ("warp", "weft"):
+            size = tow["systems"][system]
+            self.assertLess(size["height"] / size["width"], 0.2)
+        # Sheets of 3K twills say 0.28 to 0.30 mm.
+        self.assertLess(tow["thickness"], 0.35)
+
+    def test_dense_cloths_are_sound(self):
+        self.is_sound(cotton(tex=55, warp=0.4545, weft=0.357, draft="twill 2/2"))
+        self.is_sound(cotton(tex=20, warp=0.19, weft=0.36, draft="plain", state="loom"))
+        self.is_sound(cotton(tex=15, warp=0.17, weft=0.3, draft="satin 5", state="loom"))
+        self.is_sound(cotton(tex=67, warp=0.4456, weft=0.4704, draft="satin 8/3", more="  filaments 400\n"))
+
+    def test_layers_and_relaxed_spacing(self):
+        self.is_sound(cotton(draft="basket 2/2", warp=0.36, weft=0.36, statement="  spacing relaxed\n"))
+        self.is_sound(cotton(statement="  layers 2\n"))
+
+    def test_crimp_and_thickness_are_constraints(self):
+        free = self.sheet(cotton(draft="plain"))
+        thickness = 0.85 * free["thickness"]
+        pressed = self.sheet(cotton(draft="plain", statement=f"  thickness {thickness!r}\n"))
+        self.assertLess(pressed["thickness"], 1.005 * thickness)
+        self.assertGreater(pressed["systems"]["warp"]["width"], free["systems"]["warp"]["width"])
+        shares = [
+            self.sheet(cotton(draft="plain", statement=f"  crimp {share}\n"))["systems"] for share in (0.2, 0.5, 0.8)
+        ]
+        warps = [systems["warp"]["crimp"] for systems in shares]
+        self.assertEqual(warps, sorted(warps))
+        self.assertGreater(warps[2], 4 * warps[0])
+
+    def test_remedies_of_a_jammed_cloth_work(self):
+        said = self.failure(cotton(draft="plain", warp=0.1, weft=0.1))
+        self.assertIn("jammed", said)
+        both = re.search(r"`pitch (\S+)` for the warp and `pitch (\S+)` for the weft", said)
+        self.is_sound(cotton(draft="plain", warp=float(both[1]), weft=float(both[2])))
+        thinner = re.search(r"`tex (\S+)` for thread 'cotton'", said)
+        self.is_sound(cotton(draft="plain", warp=0.1, weft=0.1, tex=float(thinner[1])))
+
+    def test_least_thickness_is_one_that_it_has(self):
+        said = self.failure(cotton(draft="plain", statement="  thickness 0.03\n"))
+        least = float(re.search(r"it is (\S+) mm at the least", said)[1])
+        self.is_sound(cotton(draft="plain", statement=f"  thickness {least}\n"))
+        self.failure(cotton(draft="plain", statement=f"  thickness {0.97 * least}\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()
