@@ -60,6 +60,7 @@ Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bo
 
 std::vector<double> gaps_of(const System& system, int count) {
   std::vector<double> gaps;
+  gaps.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k)
     gaps.push_back(system.offsets.empty() ? system.text->pitch : system.at(k + 1) - system.at(k));
   return gaps;
