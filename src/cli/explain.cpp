@@ -101,8 +101,9 @@ std::string equilibrium_text() {
          "exclude a state. The twist factor is that of the thread's `twist`, or the usual one of its\n"
          "material and filaments.\n"
          "\n"
-         "`selvage info` reports the cross-section and packing fraction of each thread, crimp,\n"
-         "thickness, and the steps and residual of the solution.\n"
+         "`selvage info` reports cross-sections at crossings and between, packing fraction, crimp and\n"
+         "take-up of both systems, thickness, the parts of the energy, and the steps and residual of\n"
+         "the solution. Cross-sections are ellipses; plies and filaments are not built.\n"
          "A cloth without equilibrium is an error with remedies: its yarns do not fit at these\n"
          "pitches, or not with this crimp or thickness.\n"
          "Without `state` paths and cross-sections follow from the formula of the profile.\n";

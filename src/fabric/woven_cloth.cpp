@@ -17,8 +17,6 @@ namespace {
 
 using mechanics::WovenSystem;
 
-// Tension of both systems where little is left of that of the finisher.
-constexpr double relaxed_tension = 0.05;
 constexpr double stiffness_of_solids = 100;
 
 WovenSystem system_of(bool is_weft) {
@@ -97,7 +95,7 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
       cloth.weft_tension = cloth.constants.loom_tension;
       break;
     case Weave::State::relaxed:
-      cloth.warp_tension = cloth.weft_tension = relaxed_tension;
+      cloth.warp_tension = cloth.weft_tension = mechanics::relaxed_tension;
       break;
     case Weave::State::finished:
       break;
@@ -132,10 +130,10 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
     for (int yarn = 0; yarn < yarns; ++yarn) {
       const nurbs::Curve line =
           unclamped(is_weft, yarn, 0, static_cast<long long>(crossings) * mechanics::spans_a_gap);
-      for (int quarter = 0; quarter < crossings * mechanics::spans_a_gap; ++quarter) {
+      for (int k = 0; k < crossings * mechanics::spans_a_gap; ++k) {
         const auto size = equilibrium_.size(system_of(is_weft), yarn,
-                                            static_cast<double>(quarter) / mechanics::spans_a_gap);
-        const double z = nurbs::evaluate(line, knot(is_weft, quarter)).z();
+                                            static_cast<double>(k) / mechanics::spans_a_gap);
+        const double z = nurbs::evaluate(line, knot(is_weft, k)).z();
         top_ = std::max(top_, z + 0.5 * size.height);
         bottom_ = std::min(bottom_, z - 0.5 * size.height);
         max_width_[is_weft ? 1 : 0] = std::max(max_width_[is_weft ? 1 : 0], size.width);
@@ -176,7 +174,7 @@ double ClothInEquilibrium::height(bool is_weft, long long yarn, long long crossi
 
 void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
                                Vec3 (*to_place)(double s, double z, double across)) const {
-  constexpr int stations = 2 * mechanics::spans_a_gap;  // of sizes, from crossing to crossing
+  constexpr int stations = 8;  // of sizes, from crossing to crossing
   const System& crossed = is_weft ? warp_ : weft_;
   const auto crossing_near = [&](double s) {
     return static_cast<long long>(std::floor(s / crossed.text->pitch));
@@ -240,6 +238,7 @@ EquilibriumReport ClothInEquilibrium::report() const {
         system.width += weight * millimetres_ * here.width;
         system.height += weight * millimetres_ * here.height;
         system.width_between += weight * millimetres_ * between.width;
+        system.axis_height += weight * millimetres_ * std::abs(height(is_weft, yarn, crossing));
         system.height_between += weight * millimetres_ * between.height;
       }
       system.packing += packing(is_weft, yarn) / yarns;
@@ -249,6 +248,7 @@ EquilibriumReport ClothInEquilibrium::report() const {
   }
   const mechanics::WovenEnergy energy = equilibrium_.energy();
   const double whole = energy.sum() > 0.0 ? energy.sum() : 1.0;
+  made.energy = energy.sum();
   made.bending = energy.bending / whole;
   made.tension = energy.tension / whole;
   made.flattening = energy.flattening / whole;

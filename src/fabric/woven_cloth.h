@@ -46,7 +46,7 @@ class ClothInEquilibrium {
  private:
   ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth,
                      mechanics::WovenEquilibrium equilibrium);
-  [[nodiscard]] double knot(bool is_weft, long long index) const;  // of quarters of gaps along a yarn
+  [[nodiscard]] double knot(bool is_weft, long long index) const;  // of the centre lines' spans
   [[nodiscard]] double control_height(bool is_weft, long long yarn, long long index) const;
   [[nodiscard]] nurbs::Curve unclamped(bool is_weft, long long yarn, long long first, long long last) const;
 

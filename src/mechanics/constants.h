@@ -17,6 +17,9 @@ struct WovenConstants {
 inline constexpr double densest_packing = 0.9068996821171089;  // pi / (2 sqrt(3)): hexagons of round fibres
 inline constexpr double reference_twist_factor = 4000;         // turns/m sqrt(tex), carded cotton warp
 
+// Tension of both systems where little is left of that of the finisher.
+inline constexpr double relaxed_tension = 0.05;
+
 // Resistance to flattening of a yarn of this twist factor, over that of the reference: in proportion, with a
 // rest for yarns without twist, which friction and sizing hold together (Afrashteh, Merati, Jeddi, Indian J.
 // Fibre & Textile Research 38 (2013) 126: height over width 0.35 without twist, 0.86 at 4,600).

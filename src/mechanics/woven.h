@@ -16,8 +16,8 @@ class WovenEquilibrium {
   WovenEquilibrium(std::shared_ptr<const WovenProblem> problem, Minimum minimum, double scale)
       : problem_(std::move(problem)), minimum_(std::move(minimum)), scale_(scale) {}
 
-  // The control value of a centre line, in the cloth's unit: `knot` = 4 * (number of the crossing) at
-  // crossings, three more between them. Cubic B-splines; the knots divide each gap evenly.
+  // The control value of a centre line, in the cloth's unit; `knot` is spans_a_gap times the number of the
+  // crossing at crossings. Cubic B-splines; the knots divide each gap evenly.
   [[nodiscard]] double control_height(WovenSystem system, int yarn, int knot) const;
   struct Size {
     double width = 0, height = 0;

@@ -227,7 +227,7 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
 // A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other,
 // and where they change sides they pass at one height.
 void WovenProblem::add_beside(WovenSystem system, Crossing at) {
-  constexpr int places = 2 * spans_a_gap;
+  constexpr int places = 8, half = places / 2;  // a gap
   const WovenSystem other = system == WovenSystem::warp ? WovenSystem::weft : WovenSystem::warp;
   const Crossing next = along(other, at, 1);
   // How far the yarn is above the next one: by no side, or by one up or down.
@@ -242,7 +242,7 @@ void WovenProblem::add_beside(WovenSystem system, Crossing at) {
     const Point a = point(system, at, gaps), b = point(system, next, gaps);
     const bool is_level =
         2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
-    if (!is_level || place % spans_a_gap != 0) {
+    if (!is_level || place % half != 0) {
       besides_.push_back(
           {{a.z, a.slope, a.half_width, a.half_height, b.z, b.slope, b.half_width, b.half_height},
            gap(other, at, 0),
@@ -250,8 +250,8 @@ void WovenProblem::add_beside(WovenSystem system, Crossing at) {
     } else {
       Linear apart;
       apart.forms[0].constant = gap(other, at, 0) - cloth_.clearance;
-      apart.forms[0].add(width_at(system, at.pick, at.end, place / spans_a_gap), -1.0);
-      apart.forms[0].add(width_at(system, next.pick, next.end, place / spans_a_gap), -1.0);
+      apart.forms[0].add(width_at(system, at.pick, at.end, place / half), -1.0);
+      apart.forms[0].add(width_at(system, next.pick, next.end, place / half), -1.0);
       linears_.push_back(apart);
     }
   }

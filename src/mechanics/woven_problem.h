@@ -2,7 +2,7 @@
 // lengths are ratios to the square root of the yarns' mean fibre area, all energies to the tension of a
 // finished cloth times that area.
 //
-// A centre line is a cubic B-spline over four spans from crossing to crossing, a section an ellipse that is
+// A centre line is a cubic B-spline over eight spans from crossing to crossing, a section an ellipse that is
 // given at crossings and half way between them, with smooth steps from one to the next. Crossings of a class
 // (partition.h) have the same unknowns; terms are written once for crossings with neighbours of the same
 // classes.
@@ -18,7 +18,7 @@
 
 namespace selvage::mechanics {
 
-inline constexpr int spans_a_gap = 4;
+inline constexpr int spans_a_gap = 8;
 
 struct WovenYarn {
   double fibre_area = 0;

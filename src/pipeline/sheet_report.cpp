@@ -69,8 +69,10 @@ void add_equilibrium(const fabric::EquilibriumReport& found, Json& json) {
     of["height"] = system.height;
     of["width_between"] = system.width_between;
     of["height_between"] = system.height_between;
+    of["axis_height"] = system.axis_height;
     of["packing_fraction"] = system.packing;
   }
+  json["energy"] = found.energy;
   json["bending_fraction"] = found.bending;
   json["tension_fraction"] = found.tension;
   json["flattening_fraction"] = found.flattening;

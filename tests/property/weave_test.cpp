@@ -2,6 +2,9 @@
 // the text's draft, read here by itself, says which has to be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -60,7 +63,7 @@ Vec3 place_at(const YarnPlan& plan, int axis, double value) {
 }
 
 struct WovenCrossing {
-  double warp_z = 0, weft_z = 0;
+  double x = 0, y = 0, warp_z = 0, weft_z = 0;
 };
 
 WovenCrossing crossing_of(const YarnPlan& warp, const YarnPlan& weft) {
@@ -68,11 +71,21 @@ WovenCrossing crossing_of(const YarnPlan& warp, const YarnPlan& weft) {
   const Vec3 on_warp = place_at(warp, 0, x), on_weft = place_at(weft, 1, y);
   EXPECT_NEAR(on_warp.y(), y, 1e-12);
   EXPECT_NEAR(on_weft.x(), x, 1e-12);
-  return {on_warp.z(), on_weft.z()};
+  return {x, y, on_warp.z(), on_weft.z()};
 }
 
-double thickness(const YarnPlan& plan) {
-  return plan.spec.sizes.front().size.height;
+// Of the section where the yarn is nearest to a place along an axis.
+double thickness(const YarnPlan& plan, int axis, double place) {
+  double parameter = 0.0, least = std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < std::min(plan.points.size(), plan.line.parameters.size()); ++row)
+    if (const double off = std::abs(plan.points[row][axis] + plan.at[axis] - place); off < least) {
+      least = off;
+      parameter = plan.line.parameters[row];
+    }
+  const auto nearer = [&](const yarn::SizeAtParameter& a, const yarn::SizeAtParameter& b) {
+    return std::abs(a.parameter - parameter) < std::abs(b.parameter - parameter);
+  };
+  return std::min_element(plan.spec.sizes.begin(), plan.spec.sizes.end(), nearer)->size.height;
 }
 
 // Everything about a weave's order that its centre lines show otherwise than its text says.
@@ -115,7 +128,7 @@ class Differences {
         const bool is_pressed = !weave_.profile && !std::holds_alternative<yarn::Circle>(warp.spec.section) &&
                                 !std::holds_alternative<yarn::Lenticular>(warp.spec.section) &&
                                 !std::holds_alternative<yarn::Racetrack>(warp.spec.section);
-        const double least = 0.5 * (thickness(warp) + thickness(weft)),
+        const double least = 0.5 * (thickness(warp, 0, crossing.x) + thickness(weft, 1, crossing.y)),
                      most = weave_.profile == Profile::sine ? 1.3
                             : is_pressed                    ? 1.25
                                                             : 1.05,
