@@ -170,6 +170,13 @@ std::string options_of(std::string_view word) {
   return text.empty() ? text : "\nOptions of that name:\n" + text;
 }
 
+// Topics first: of words that are equally near the first one is meant.
+std::vector<std::string> all_help() {
+  std::vector<std::string> all = all_topics();
+  for (const std::string& word : explained_words()) all.push_back(word);
+  return all;
+}
+
 std::string text_of(const Topic& topic) {
   return fmt::format("{}: {}\n\n{}", topic.name, topic.title, topic.text());
 }
@@ -253,7 +260,7 @@ Result<std::string> help_of(const std::string& topic) {
   if (!text)
     return error(Kind::usage,
                  fmt::format("there is no help on '{}'{} (topics: {})", topic,
-                             did_you_mean(topic, explained_words()), fmt::join(all_topics(), ", ")));
+                             did_you_mean(topic, all_help()), fmt::join(all_topics(), ", ")));
   std::string block = topic;
   std::transform(block.begin(), block.end(), block.begin(), lower);
   *text += statements_of(block) + options_of(block);
