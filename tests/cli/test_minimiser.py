@@ -196,9 +196,9 @@ class Minimiser(Case):
                 self.assertLess(abs(sheet["energy"] / best.fun - 1), 1e-3)
                 for name, (heights, sections) in zip(("warp", "weft"), problem.split(best.x)):
                     system = sheet["systems"][name]
-                    self.assertAlmostEqual(system["axis_height"] / (heights[0] * unit), 1, delta=5e-3)
-                    self.assertAlmostEqual(system["width"] / (2 * sections[0] * unit), 1, delta=5e-3)
-                    self.assertAlmostEqual(system["height"] / (2 * sections[1] * unit), 1, delta=5e-3)
+                    self.assertAlmostEqual(system["axis_height"] / (heights[0] * unit), 1, delta=8e-3)
+                    self.assertAlmostEqual(system["width"] / (2 * sections[0] * unit), 1, delta=8e-3)
+                    self.assertAlmostEqual(system["height"] / (2 * sections[1] * unit), 1, delta=8e-3)
                 print(cloth, f"energy {sheet['energy'] / best.fun - 1:+.1e}")
 
 
