@@ -258,9 +258,8 @@ Result<std::string> help_of(const std::string& topic) {
   if (const Topic* const known = find_topic(topic)) return text_of(*known);
   Result<std::string> text = explain(topic);
   if (!text)
-    return error(Kind::usage,
-                 fmt::format("there is no help on '{}'{} (topics: {})", topic,
-                             did_you_mean(topic, all_help()), fmt::join(all_topics(), ", ")));
+    return error(Kind::usage, fmt::format("there is no help on '{}'{} (topics: {})", topic,
+                                          did_you_mean(topic, all_help()), fmt::join(all_topics(), ", ")));
   std::string block = topic;
   std::transform(block.begin(), block.end(), block.begin(), lower);
   *text += statements_of(block) + options_of(block);

@@ -12,9 +12,9 @@ struct EquilibriumReport {
     std::string_view name;
     double width = 0, height = 0;                  // of the cross-section at crossings
     double width_between = 0, height_between = 0;  // half way between them
-    double axis_height = 0;                        // of centre lines at crossings, over the middle of the cloth
-    double packing = 0;                            // fibre area over yarn area
-    double crimp = 0;                              // (L - p) / p
+    double axis_height = 0;  // of centre lines at crossings, over the middle of the cloth
+    double packing = 0;      // fibre area over yarn area
+    double crimp = 0;        // (L - p) / p
     [[nodiscard]] double take_up() const { return crimp / (1.0 + crimp); }
   };
   std::string_view state;

@@ -131,8 +131,8 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
       const nurbs::Curve line =
           unclamped(is_weft, yarn, 0, static_cast<long long>(crossings) * mechanics::spans_a_gap);
       for (int k = 0; k < crossings * mechanics::spans_a_gap; ++k) {
-        const auto size = equilibrium_.size(system_of(is_weft), yarn,
-                                            static_cast<double>(k) / mechanics::spans_a_gap);
+        const auto size =
+            equilibrium_.size(system_of(is_weft), yarn, static_cast<double>(k) / mechanics::spans_a_gap);
         const double z = nurbs::evaluate(line, knot(is_weft, k)).z();
         top_ = std::max(top_, z + 0.5 * size.height);
         bottom_ = std::min(bottom_, z - 0.5 * size.height);

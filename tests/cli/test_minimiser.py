@@ -56,8 +56,10 @@ PLACES = 16  # of contact, along each yarn
 
 def constants():
     text = (ROOT / "src/mechanics/constants.h").read_text()
-    return {name: float(re.search(rf"{name} = ([\d.e-]+);", text)[1])
-            for name in ("bending", "loom_tension", "flattening", "packing", "compaction", "cohesion", "relaxed_tension")}
+    return {
+        name: float(re.search(rf"{name} = ([\d.e-]+);", text)[1])
+        for name in ("bending", "loom_tension", "flattening", "packing", "compaction", "cohesion", "relaxed_tension")
+    }
 
 
 class Profile:
@@ -100,7 +102,7 @@ class Cloth:
     def split(self, x):
         """Of warp and weft: heights of the nodes; half width and half height at crossings and half way."""
         size = PIECES + 4
-        return [(x[k * size:k * size + PIECES], x[k * size + PIECES:(k + 1) * size]) for k in range(2)]
+        return [(x[k * size : k * size + PIECES], x[k * size + PIECES : (k + 1) * size]) for k in range(2)]
 
     @staticmethod
     def sections(sections, t):
@@ -135,13 +137,19 @@ class Cloth:
         du2, dw2 = du[:, None] ** 2, dw[None, :] ** 2
         gap = u[:, None] - w[None, :] - du[:, None] * xi + dw[None, :] * eta
         gap = gap - np.sqrt(a[:, None] ** 2 * dw2 + b[:, None] ** 2 * (1 + du2))
-        gap = gap - np.sqrt(c[None, :] ** 2 * du2 + d[None, :] ** 2 * (1 + dw2)) - self.clearance * np.sqrt(1 + du2 + dw2)
+        gap = (
+            gap - np.sqrt(c[None, :] ** 2 * du2 + d[None, :] ** 2 * (1 + dw2)) - self.clearance * np.sqrt(1 + du2 + dw2)
+        )
         parts = [gap.ravel()]
-        for k, (z, slope, second, width, height, sections) in enumerate(((u, du, ddu, a, b, warp_sections),
-                                                                         (w, dw, ddw, c, d, weft_sections))):
+        for k, (z, slope, second, width, height, sections) in enumerate(
+            ((u, du, ddu, a, b, warp_sections), (w, dw, ddw, c, d, weft_sections))
+        ):
             beside = self.gaps[1 - k]
-            parts.append((beside / (2 * width + self.clearance)) ** 2 - 1
-                         + (2 * z / (2 * height * np.sqrt(1 + slope**2) + self.clearance)) ** 2)
+            parts.append(
+                (beside / (2 * width + self.clearance)) ** 2
+                - 1
+                + (2 * z / (2 * height * np.sqrt(1 + slope**2) + self.clearance)) ** 2
+            )
             parts.append([beside - self.clearance - 2 * sections[2]])
             for side in (-1, 1):
                 parts.append((1 + slope**2) ** 1.5 - 1.05 * side * second * height)
@@ -159,9 +167,14 @@ class Cloth:
             t = np.arange(PIECES) / PIECES
             start += [part * sum(radii) * np.cos(0.5 * math.pi * t), [radii[k]] * 4]
         bounds = ([(None, None)] * PIECES + [(0.02, None)] * 4) * 2
-        found = minimize(self.energy, np.concatenate(start), method="SLSQP", bounds=bounds,
-                         options={"maxiter": 500, "ftol": 1e-10},
-                         constraints={"type": "ineq", "fun": self.inequalities})
+        found = minimize(
+            self.energy,
+            np.concatenate(start),
+            method="SLSQP",
+            bounds=bounds,
+            options={"maxiter": 500, "ftol": 1e-10},
+            constraints={"type": "ineq", "fun": self.inequalities},
+        )
         return found if found.success and self.inequalities(found.x).min() > -1e-6 else None
 
 
@@ -169,8 +182,18 @@ class Minimiser(Case):
     def sheet(self, cloth, more=""):
         warp_tex, weft_tex, warp_twist, weft_twist, warp_pitch, weft_pitch, state, _ = cloth
         path = self.folder / "cloth.txt"
-        path.write_text(TEXT.format(warp_tex=warp_tex, weft_tex=weft_tex, warp_twist=warp_twist, weft_twist=weft_twist,
-                                    warp_pitch=warp_pitch, weft_pitch=weft_pitch, state=state, more=more))
+        path.write_text(
+            TEXT.format(
+                warp_tex=warp_tex,
+                weft_tex=weft_tex,
+                warp_twist=warp_twist,
+                weft_twist=weft_twist,
+                warp_pitch=warp_pitch,
+                weft_pitch=weft_pitch,
+                state=state,
+                more=more,
+            )
+        )
         return json.loads(self.succeeds("info", path, "--json").stdout)["inputs"][0]["sheets"]["weave"]
 
     def test_another_minimiser_agrees(self):
@@ -184,11 +207,17 @@ class Minimiser(Case):
             if thickness:
                 sheet = self.sheet(cloth, f"  thickness {thickness!r}\n")
             diameters = [2 * math.sqrt(tex / 1520 / 0.6 / math.pi) for tex in (warp_tex, weft_tex)]
-            tensions = {"loom": (1, c["loom_tension"]), "relaxed": (c["relaxed_tension"],) * 2, "finished": (1, 1)}[state]
-            problem = Cloth([area / unit**2 for area in areas],
-                            [warp_twist * math.sqrt(warp_tex), weft_twist * math.sqrt(weft_tex)],
-                            [weft_pitch / unit, warp_pitch / unit], tensions, (2e-4 + 0.01 * min(diameters)) / unit,
-                            thickness / unit if thickness else None)
+            tensions = {"loom": (1, c["loom_tension"]), "relaxed": (c["relaxed_tension"],) * 2, "finished": (1, 1)}[
+                state
+            ]
+            problem = Cloth(
+                [area / unit**2 for area in areas],
+                [warp_twist * math.sqrt(warp_tex), weft_twist * math.sqrt(weft_tex)],
+                [weft_pitch / unit, warp_pitch / unit],
+                tensions,
+                (2e-4 + 0.01 * min(diameters)) / unit,
+                thickness / unit if thickness else None,
+            )
             minima = [found for found in (problem.minimum(share) for share in (0.5, 0.75, 0.3)) if found is not None]
             self.assertTrue(minima, cloth)
             best = min(minima, key=lambda found: found.fun)
