@@ -75,7 +75,7 @@ WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, doub
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {
   // Rough minima from all starts; those that are no copies of each other are polished, and the one of least
   // energy is taken: of equal ones (1e-6) that of the first start.
-  constexpr double rough = 1e-3, copy = 0.05, tie = 1e-6;
+  constexpr double rough = 1e-3, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
   constexpr int rough_rounds = 2, max_rounds = 30;
   const double scale = std::sqrt(mean_area(cloth));
   const WovenCloth ratios = scaled(cloth, 1.0 / scale);
@@ -106,11 +106,15 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
     candidate.minimum.steps = 0;
     Minimum found = settle(*problem, std::move(candidate.minimum), options.tolerance, max_rounds, workspace);
     steps += found.steps;
+    // Rounds that never came to rest leave an inequality violated: no equilibrium, whatever the residual.
+    const double violation = problem->worst(found.x);
     if (found.residual < residual) {
       residual = found.residual;
-      overlap = problem->worst(found.x);
+      overlap = violation;
     }
-    if (found.is_converged && (!best || found.energy < best->energy * (1.0 - tie))) best = std::move(found);
+    if (found.is_converged && violation <= max_violation &&
+        (!best || found.energy < best->energy * (1.0 - tie)))
+      best = std::move(found);
   }
   if (!best)
     return error(

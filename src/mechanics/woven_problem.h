@@ -55,8 +55,8 @@ class WovenProblem final : public BarrierProblem {
   // `scaled`: lengths already in ratios.
   WovenProblem(const WovenCloth& scaled, int max_classes);
 
-  // Unknowns at which yarns rise by these waves (of the warp: its share of both), sections at rest times
-  // `size`.
+  // Unknowns of a start: sections at rest, centre lines whose crimp heights at a crossing sum to the
+  // thickness of both yarns there; warp_share: fraction of it that the warp takes.
   [[nodiscard]] Eigen::VectorXd start(double warp_share) const;
   // Which inequalities take part: all that are not far from touching. True: one has entered that is violated
   // by more than `tolerance`, or one that no longer holds has left. Multipliers and slacks follow.
