@@ -63,6 +63,7 @@ std::vector<yarn::Body> cloth_of(bool weave, int size) {
     item.warp.threads = item.weft.threads = {thread.name};
     item.warp.count = item.weft.count = size;
     item.warp.pitch = item.weft.pitch = 0.5;
+    item.profile = fabric::Weave::Profile::peirce;
     cloth.items = {item};
   } else {
     fabric::Knit item;

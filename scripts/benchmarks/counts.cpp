@@ -60,6 +60,7 @@ fabric::Fabric weave(int size) {
   item.warp.threads = item.weft.threads = {thread.name};
   item.warp.count = item.weft.count = size;
   item.warp.pitch = item.weft.pitch = 0.5;
+  item.profile = fabric::Weave::Profile::peirce;
   cloth.items = {item};
   return cloth;
 }

@@ -158,8 +158,8 @@ double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& 
 void note_equilibrium(const Thread& thread, Detail detail, const Fabric& fabric, Diagnostics& diagnostics) {
   if (part_count(thread, detail) == 1) return;
   std::string text = fmt::format(
-      "the yarns of thread '{}' are built as a whole: in a weave with `state` sections vary along "
-      "the yarns, and plies and filaments are not built",
+      "the yarns of thread '{}' are built as a whole: their sections change along them, as the cloth is in "
+      "equilibrium; with a `profile` plies and filaments are built",
       thread.name);
   diagnostics.add((detail == Detail::usual ? note(Kind::unsupported, std::move(text))
                                            : warning(Kind::unsupported, std::move(text)))

@@ -25,7 +25,6 @@ struct EquilibriumReport {
   int steps = 0;         // of Newton's method, all starts
   double residual = 0;   // of the gradient, over its scale
   int num_classes = 0;   // congruence classes of crossings
-  bool is_exact = true;  // false: the classes are those of neighbourhoods
 };
 
 }  // namespace selvage::fabric

@@ -307,8 +307,8 @@ struct Weave {
   enum class Spacing { even, relaxed };
   std::optional<Spacing> spacing;
   // Equilibrium of the cloth under the tensions of its two systems. loom: those of weaving, wefts nearly
-  // straight; relaxed: little tension in both; finished: equal tensions in both. None: the geometry follows
-  // from the formulas of the profile.
+  // straight; relaxed: little tension in both; finished: equal tensions in both. None: finished, but where a
+  // formula is asked for (a profile, a pucker, leno, sections other than circles and ellipses).
   enum class State { loom, relaxed, finished };
   std::optional<State> state;
   std::optional<Pucker> pucker;

@@ -1,8 +1,9 @@
 // The construction `weave` (formats/txt/README.md): warp i along x at y = (i - 1/2) pitch(warp), weft j along
-// y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross keep 1 % of their thickness (or
-// BuildOptions::gap) and twice the tolerance apart; in a jammed cloth, which has no room for that, they are
-// made thinner (weave_fit.h), and pressed flat in a denser one (weave_pressed.h). As published: they are
-// twice the tolerance apart at the crossing itself, and touch in a jammed cloth.
+// y at x = (j - 1/2) pitch(weft), about z = 0. Paths and sections are in equilibrium (woven_cloth.h), or those
+// of a formula (weave_fit.h): yarns that cross keep 1 % of their thickness (or BuildOptions::gap) and twice the
+// tolerance apart; in a jammed cloth, which has no room for that, they are made thinner, and pressed flat in a
+// denser one (weave_pressed.h). As published: they are twice the tolerance apart at the crossing itself, and
+// touch in a jammed cloth.
 #include "fabric/constructions.h"
 
 #include <fmt/format.h>
@@ -73,7 +74,8 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
       weave_(weave),
       as_published_(options.as_published),
       warp_(std::move(warp)),
-      weft_(std::move(weft)) {
+      weft_(std::move(weft)),
+      has_formula_(asks_for_formula()) {
   const bool has_cell = fabric.cell.has_value();
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
@@ -208,7 +210,35 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
-  if (weave_.state) return prepare_equilibrium(diagnostics);
+  if (!has_formula_) {
+    Status found = prepare_equilibrium(diagnostics);
+    if (found || found.error().kind != Kind::limit) return found;
+    const std::string text = fmt::format("no equilibrium of the cloth is looked for: {}", found.error().text);
+    if (weave_.state)
+      return error(Kind::limit, text + "; without 'state' a formula gives heights and sections")
+          .placed(weave_.place);
+    has_formula_ = true;
+    space_evenly(weft_);
+    space_evenly(warp_);
+    warn(weave_.place, text + "; a formula gives its heights and sections", diagnostics);
+  }
+  return prepare_formula(diagnostics);
+}
+
+// A formula has been named, or is that of the sections' form, or nothing else is known of the construction.
+bool WeaveConstruction::asks_for_formula() const {
+  if (weave_.state) return false;
+  const auto has_form = [](const System& system) {
+    return std::any_of(system.threads.begin(), system.threads.end(), [](const WovenThread& woven) {
+      return !std::holds_alternative<yarn::Circle>(woven.section) &&
+             !std::holds_alternative<yarn::Ellipse>(woven.section);
+    });
+  };
+  return as_published_ || weave_.profile || weave_.amplitude || weave_.pucker ||
+         weave_.draft.form == Draft::Form::leno || has_form(warp_) || has_form(weft_);
+}
+
+Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
   const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
     if (!weave_.profile) {
       const std::optional<Bend> bend = natural_bend(crossed);
@@ -300,7 +330,10 @@ Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
   }
   Result<ClothInEquilibrium> found =
       ClothInEquilibrium::find({&fabric_, &weave_, &warp_, &weft_, &drawdown_, clearance_});
-  if (!found) return found.error().place.line == weave_.place.line ? jammed(found.error()) : found.error();
+  if (!found)
+    return found.error().kind == Kind::geometry && found.error().place.line == weave_.place.line
+               ? jammed(found.error())
+               : found.error();
   equilibrium_ = std::move(*found);
   std::set<const Thread*> told;
   for (const System* system : {&warp_, &weft_})

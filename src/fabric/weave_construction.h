@@ -83,7 +83,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] std::uint64_t points_of(bool is_weft) const {
     const Reach& reach = is_weft ? along_y_ : along_x_;
     const auto crossings = static_cast<std::uint64_t>(reach.last - reach.first + 3);
-    if (weave_.state) return mechanics::spans_a_gap * crossings;
+    if (!has_formula_) return mechanics::spans_a_gap * crossings;
     return is_sine(is_weft) ? points_a_wave * crossings : crossings;
   }
   [[nodiscard]] bool is_sine(bool is_weft) const {
@@ -99,6 +99,8 @@ class WeaveConstruction final : public Construction {
     return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
+  [[nodiscard]] bool asks_for_formula() const;
+  Status prepare_formula(Diagnostics& diagnostics);
   Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
   Status prepare_leno();
@@ -139,6 +141,7 @@ class WeaveConstruction final : public Construction {
   const Weave& weave_;
   bool as_published_ = false;
   System warp_, weft_;
+  bool has_formula_ = false;  // for heights and sections; else they are in equilibrium
   // One a binder line: its thread, and the clearance of its bends from the wefts.
   std::vector<WovenThread> binders_;
   std::vector<double> binder_clearances_;

@@ -19,6 +19,10 @@ using mechanics::WovenSystem;
 
 constexpr double stiffness_of_solids = 100;
 
+Weave::State state_of(const Weave& weave) {
+  return weave.state.value_or(Weave::State::finished);
+}
+
 WovenSystem system_of(bool is_weft) {
   return is_weft ? WovenSystem::weft : WovenSystem::warp;
 }
@@ -67,7 +71,14 @@ std::vector<double> gaps_of(const System& system, int count) {
 }  // namespace
 
 Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
+  constexpr std::uint64_t most_repeat_crossings = 4'000'000;  // of a repeat
   mechanics::WovenCloth cloth;
+  const auto repeat_of = [](const System& system, long long changes) {
+    return static_cast<std::uint64_t>(std::lcm(changes, system.repeat_of_threads()));
+  };
+  if (product_of(repeat_of(*text.warp, text.drawdown->repeat_of_ends()),
+                 repeat_of(*text.weft, text.drawdown->repeat_of_picks())) > most_repeat_crossings)
+    return error(Kind::limit, fmt::format("its repeat has more than {} crossings", most_repeat_crossings));
   const auto add = [&](const System& system, long long repeat, bool is_warp,
                        std::vector<mechanics::WovenYarn>& yarns, std::vector<double>& gaps) -> Status {
     const auto count = static_cast<int>(std::lcm(repeat, system.repeat_of_threads()));
@@ -90,7 +101,7 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
   for (int pick = 0; pick < cloth.picks(); ++pick)
     for (int end = 0; end < cloth.ends(); ++end)
       cloth.warp_on_top.push_back(text.drawdown->warp_on_top(pick, end) ? 1 : 0);
-  switch (*text.weave->state) {
+  switch (state_of(*text.weave)) {
     case Weave::State::loom:
       cloth.weft_tension = cloth.constants.loom_tension;
       break;
@@ -118,7 +129,7 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
                                        mechanics::WovenEquilibrium equilibrium)
     : warp_(*text.warp),
       weft_(*text.weft),
-      state_(*text.weave->state),
+      state_(state_of(*text.weave)),
       millimetres_(millimetres_per(text.fabric->units)),
       cloth_(std::move(cloth)),
       equilibrium_(std::move(equilibrium)) {
@@ -256,7 +267,6 @@ EquilibriumReport ClothInEquilibrium::report() const {
   made.steps = equilibrium_.steps();
   made.residual = equilibrium_.residual();
   made.num_classes = equilibrium_.num_classes();
-  made.is_exact = equilibrium_.is_exact();
   return made;
 }
 

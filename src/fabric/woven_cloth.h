@@ -15,19 +15,19 @@ namespace selvage::fabric {
 // What the equilibrium is of. `clearance`: between yarns, file units.
 struct ClothText {
   const Fabric* fabric = nullptr;
-  const Weave* weave = nullptr;  // with a state
+  const Weave* weave = nullptr;  // without a state: finished
   const System *warp = nullptr, *weft = nullptr;
   const Drawdown* drawdown = nullptr;
   double clearance = 0;
   double yarns = 1;  // diameters over those of the text
 };
 
-// Error (geometry, at the thread): its twist, as of twist_factor_of.
+// Errors: of twist_factor_of, at the thread (geometry); a repeat of too many crossings (limit).
 Result<mechanics::WovenCloth> woven_cloth(const ClothText& text);
 
 class ClothInEquilibrium {
  public:
-  // Errors (geometry): of woven_cloth; no equilibrium (at the weave).
+  // Errors: of woven_cloth; of find_equilibrium, at the weave.
   static Result<ClothInEquilibrium> find(const ClothText& text);
 
   // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with

@@ -11,72 +11,6 @@ namespace selvage::mechanics {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-void SymmetricSum::clear() {
-  for (std::vector<Entry>& column : columns_) column.clear();
-  has_more_ = false;
-  if (has_places_) std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
-}
-
-void SymmetricSum::merge(std::vector<Entry>& column) {
-  std::sort(column.begin(), column.end());
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < column.size(); ++k)
-    if (kept > 0 && column[kept - 1].first == column[k].first)
-      column[kept - 1].second += column[k].second;
-    else
-      column[kept++] = column[k];
-  column.resize(kept);
-}
-
-void SymmetricSum::add(const int* unknowns, std::size_t count, const double* values) {
-  constexpr std::size_t many = 1024;  // entries of a column that are merged
-  for (std::size_t b = 0; b < count; ++b) {
-    const int column = unknowns[b];
-    const int *at = nullptr, *end = nullptr;
-    if (has_places_) {
-      at = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
-      end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
-    }
-    for (std::size_t a = b; a < count; ++a) {
-      if (has_places_) at = std::lower_bound(at, end, unknowns[a]);
-      if (at != end && *at == unknowns[a]) {
-        matrix_.valuePtr()[at - matrix_.innerIndexPtr()] += values[a * count + b];
-        continue;
-      }
-      std::vector<Entry>& more = columns_[static_cast<std::size_t>(column)];
-      if (more.size() == more.capacity() && more.size() >= many) merge(more);
-      more.emplace_back(unknowns[a], values[a * count + b]);
-      has_more_ = true;
-    }
-  }
-}
-
-const Eigen::SparseMatrix<double>& SymmetricSum::lower() {
-  if (has_places_ && !has_more_) return matrix_;
-  std::size_t entries = 0;
-  for (Index column = 0; column < size_; ++column) {
-    std::vector<Entry>& more = columns_[static_cast<std::size_t>(column)];
-    more.emplace_back(static_cast<int>(column), 0.0);
-    if (has_places_)
-      for (Eigen::SparseMatrix<double>::InnerIterator it(matrix_, column); it; ++it)
-        more.emplace_back(static_cast<int>(it.row()), it.value());
-    merge(more);
-    entries += more.size();
-  }
-  matrix_.resize(size_, size_);
-  matrix_.reserve(static_cast<Index>(entries));
-  for (Index column = 0; column < size_; ++column) {
-    matrix_.startVec(column);
-    for (const auto& [row, value] : columns_[static_cast<std::size_t>(column)])
-      matrix_.insertBack(row, column) = value;
-    columns_[static_cast<std::size_t>(column)].clear();
-  }
-  matrix_.finalize();
-  has_places_ = is_new_ = true;
-  has_more_ = false;
-  return matrix_;
-}
-
 VectorXd SparseRows::times(const VectorXd& x) const {
   VectorXd made(static_cast<Index>(starts_.size() - 1));
   for (std::size_t row = 0; row + 1 < starts_.size(); ++row) {
@@ -102,11 +36,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The linear system of a step: positive definite by what is added to its diagonal.
 class StepSolver {
  public:
+  void analyze(const Eigen::SparseMatrix<double>& places) { solver_.analyzePattern(places); }
   // False: no multiple of the identity makes it definite.
-  bool factorize(SymmetricSum& sum) {
+  bool factorize(const Eigen::SparseMatrix<double>& matrix) {
     constexpr double smallest_shift = 1e-8;
-    const Eigen::SparseMatrix<double>& matrix = sum.lower();
-    if (sum.has_new_places()) solver_.analyzePattern(matrix);
     double shift = 0.0;
     for (int attempt = 0; attempt < max_attempts; ++attempt) {
       solver_.setShift(shift);
@@ -142,12 +75,23 @@ double to_boundary(const VectorXd& values, const VectorXd& step) {
 }  // namespace
 
 struct BarrierWorkspace::State {
-  explicit State(Index num_unknowns) : made(num_unknowns) {}
   Derivatives made;
   StepSolver solver;
+
+  // Places that are the same as before keep the order of the factorization.
+  void take(Eigen::SparseMatrix<double> places) {
+    const auto is_same = [](const int* a, const int* b, Index count) { return std::equal(a, a + count, b); };
+    const Eigen::SparseMatrix<double>& old = made.second;
+    if (old.rows() == places.rows() && old.nonZeros() == places.nonZeros() &&
+        is_same(old.outerIndexPtr(), places.outerIndexPtr(), old.cols()) &&
+        is_same(old.innerIndexPtr(), places.innerIndexPtr(), old.nonZeros()))
+      return;
+    made.second = std::move(places);
+    solver.analyze(made.second);
+  }
 };
 
-BarrierWorkspace::BarrierWorkspace(Index num_unknowns) : state_(std::make_unique<State>(num_unknowns)) {}
+BarrierWorkspace::BarrierWorkspace() : state_(std::make_unique<State>()) {}
 BarrierWorkspace::~BarrierWorkspace() = default;
 
 namespace {
@@ -207,7 +151,7 @@ class Solver {
       at_.multipliers[k] = std::clamp(at_.multipliers[k], central / nearness, central * nearness);
     }
     weights_ = at_.multipliers.cwiseQuotient(at_.slacks);
-    made_.second.clear();
+    made_.second.coeffs().setZero();
     made_.gradients.clear();
     problem_.differentiate(at_.x, at_.multipliers, weights_, made_);
   }
@@ -292,7 +236,7 @@ class Solver {
     return true;
   }
 
-  static constexpr double last_barrier = 1e-11, next_barrier = 1e-6;
+  static constexpr double last_barrier = 1e-11, next_barrier = 1e-8;
   const BarrierProblem& problem_;
   const BarrierOptions& options_;
   Minimum at_;
@@ -307,6 +251,7 @@ class Solver {
 
 Minimum minimize(const BarrierProblem& problem, Minimum start, const BarrierOptions& options,
                  BarrierWorkspace& workspace) {
+  workspace.state().take(problem.places());
   return Solver(problem, std::move(start), options, workspace.state()).run();
 }
 

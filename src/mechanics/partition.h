@@ -21,7 +21,7 @@ Partition partition_by(const std::vector<int>& colors);
 // One round: crossings of a class have left, right, lower and upper neighbours (the grid is periodic) of the
 // same classes, too.
 Partition refined(const Partition& partition, int rows, int columns);
-// Rounds until nothing changes, or until the next one had more than max_classes.
+// Rounds until nothing changes, or until the next one has more than max_classes: the last is not exact then.
 Partition stable_partition(const std::vector<int>& colors, int rows, int columns, int max_classes);
 
 }  // namespace selvage::mechanics

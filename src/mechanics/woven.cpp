@@ -75,12 +75,18 @@ WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, doub
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {
   // Rough minima from all starts; those that are no copies of each other are polished, and the one of least
   // energy is taken: of equal ones (1e-6) that of the first start.
-  constexpr double rough = 1e-3, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
+  constexpr double rough = 1e-3, fine = 1e-5, promising = 0.01, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
   constexpr int rough_rounds = 2, max_rounds = 30;
+  // In drafts of more kinds of crossings the systems share their waves from place to place, whatever the start.
+  constexpr int most_classes_of_starts = 32;
+  Partition classes = classes_of(cloth, options.max_classes);
+  if (!classes.is_exact)
+    return error(Kind::limit, fmt::format("the crossings of its repeat of {} x {} are of more than {} classes",
+                                          cloth.ends(), cloth.picks(), options.max_classes));
   const double scale = std::sqrt(mean_area(cloth));
   const WovenCloth ratios = scaled(cloth, 1.0 / scale);
-  const auto problem = std::make_shared<WovenProblem>(ratios, options.max_classes);
-  BarrierWorkspace workspace(problem->num_unknowns());
+  const auto problem = std::make_shared<WovenProblem>(ratios, std::move(classes));
+  BarrierWorkspace workspace;
   struct Candidate {
     Minimum minimum;
     std::vector<char> active;
@@ -97,14 +103,19 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
       return (other.minimum.x - found.x).cwiseAbs().maxCoeff() < copy;
     });
     if (!is_copy) candidates.push_back({std::move(found), problem->active()});
-    if (cloth.warp_share) break;
+    if (cloth.warp_share || problem->classes().count() > most_classes_of_starts) break;
   }
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.minimum.energy < b.minimum.energy;
+  });
   std::optional<Minimum> best;
   double residual = std::numeric_limits<double>::infinity(), overlap = 0.0;
   for (Candidate& candidate : candidates) {
+    if (best && candidate.minimum.energy > best->energy * (1.0 + promising)) break;
     problem->set_active(std::move(candidate.active));
     candidate.minimum.steps = 0;
-    Minimum found = settle(*problem, std::move(candidate.minimum), options.tolerance, max_rounds, workspace);
+    Minimum found = settle(*problem, std::move(candidate.minimum), fine, max_rounds, workspace);
+    found = settle(*problem, std::move(found), options.tolerance, max_rounds, workspace);
     steps += found.steps;
     // Rounds that never came to rest leave an inequality violated: no equilibrium, whatever the residual.
     const double violation = problem->worst(found.x);

@@ -34,9 +34,6 @@ class WovenEquilibrium {
   [[nodiscard]] double overlap() const { return scale_ * problem_->worst(minimum_.x); }
   [[nodiscard]] int steps() const { return minimum_.steps; }
   [[nodiscard]] int num_classes() const { return problem_->classes().count(); }
-  // False: the classes are those of neighbourhoods, since the whole repeat has too many.
-  [[nodiscard]] bool is_exact() const { return problem_->classes().is_exact; }
-  [[nodiscard]] const Partition& classes() const { return problem_->classes(); }
 
  private:
   std::shared_ptr<const WovenProblem> problem_;
@@ -46,10 +43,11 @@ class WovenEquilibrium {
 
 struct WovenOptions {
   double tolerance = 1e-9;
-  int max_classes = 256;
+  int max_classes = 256;  // of the crossings of a repeat
 };
 
-// Errors (geometry): no equilibrium without overlap exists ("jammed"), with the residual.
+// Errors: no equilibrium without overlap was found (geometry), with the residual; the crossings of the repeat
+// are of more classes than options.max_classes (limit).
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options = {});
 
 }  // namespace selvage::mechanics

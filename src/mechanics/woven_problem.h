@@ -4,8 +4,8 @@
 //
 // A centre line is a cubic B-spline over eight spans from crossing to crossing, a section an ellipse that is
 // given at crossings and half way between them, with smooth steps from one to the next. Crossings of a class
-// (partition.h) have the same unknowns; terms are written once for crossings with neighbours of the same
-// classes.
+// (partition.h) have the same unknowns and terms. Every term is a function of what yarns are at one station or
+// at two.
 #pragma once
 
 #include <array>
@@ -50,10 +50,13 @@ struct WovenEnergy {
   [[nodiscard]] double sum() const { return bending + tension + flattening + compaction; }
 };
 
+// Of the crossings of the repeat.
+Partition classes_of(const WovenCloth& cloth, int max_classes);
+
 class WovenProblem final : public BarrierProblem {
  public:
-  // `scaled`: lengths already in ratios.
-  WovenProblem(const WovenCloth& scaled, int max_classes);
+  // `scaled`: lengths already in ratios. `classes`: of classes_of, exact.
+  WovenProblem(const WovenCloth& scaled, Partition classes);
 
   // Unknowns of a start: sections at rest, centre lines whose crimp heights at a crossing sum to the
   // thickness of both yarns there; warp_share: fraction of it that the warp takes.
@@ -63,9 +66,10 @@ class WovenProblem final : public BarrierProblem {
   bool update(Minimum& at, double tolerance);
   // Which take part; empty: as in the beginning.
   [[nodiscard]] const std::vector<char>& active() const { return is_active_; }
-  void set_active(std::vector<char> active) { is_active_ = std::move(active); }
+  void set_active(std::vector<char> active);
 
   [[nodiscard]] Eigen::Index num_unknowns() const override { return num_unknowns_; }
+  [[nodiscard]] Eigen::SparseMatrix<double> places() const override { return places_; }
   double evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& inequalities) const override;
   void differentiate(const Eigen::VectorXd& x, const Eigen::VectorXd& multipliers,
                      const Eigen::VectorXd& weights, Derivatives& made) const override;
@@ -84,59 +88,93 @@ class WovenProblem final : public BarrierProblem {
                              int half) const;  // half; the next: half the height
 
  private:
-  struct Point {  // of a centre line, with what its section is there
-    Form z, slope, curvature, half_width, half_height;
+  // What a yarn is at a place.
+  enum Value { z, slope, curvature, half_width, half_height };
+  static constexpr std::size_t num_values = 5;
+  using Values = std::array<double, num_values>;
+  // The unknowns of a span of a centre line: four heights, half width and half height before and after it.
+  static constexpr std::size_t num_of_span = 8, heights_of_span = 4;
+  struct Span {
+    std::array<int, num_of_span> unknowns{};
+    std::array<int, num_of_span*(num_of_span + 1) / 2> places{};  // in places_, lower triangle row by row
+  };
+  struct SpanPair {
+    std::size_t first = 0, second = 0;
+    std::array<int, num_of_span * num_of_span> places{};
+  };
+  struct Station {
+    std::size_t span = 0;
+    std::array<std::array<double, heights_of_span>, 3> path{};  // z, slope, curvature of the four heights
+    double step = 0;                                            // of the sizes, from those before: 0 .. 1
   };
   struct PathTerm {
-    std::array<Form, 2> forms;  // slope, second derivative
+    std::size_t station = 0;
     double bending = 0, tension = 0, length = 0;
     WovenSystem system = WovenSystem::warp;
   };
   struct SectionTerm {
-    std::array<Form, 2> forms;  // half width, half height
+    std::size_t station = 0;
     double flattening = 0, compaction = 0, log_aspect = 0, packing = 0, fibre_area = 0;
   };
-  struct SquareTerm {
-    Form form;
+  struct ChangeTerm {  // factor * (difference of the size after the span and before it)^2
+    std::size_t span = 0, size = 0;  // size: 0, width; 1, height
     double factor = 0;
   };
+  struct HoldTerm {
+    std::size_t station = 0;
+    double factor = 0;
+  };
+  struct Packed {
+    std::size_t station = 0;
+    double least_product = 0;  // of the half sizes
+  };
+  struct Bound {  // linear
+    std::size_t station = 0;
+    double constant = 0;
+    Values weights{};
+  };
+  struct Fold {
+    std::size_t station = 0;
+    double side = 1;
+  };
+  struct Beside {
+    std::size_t first = 0, second = 0, pair = 0;  // stations, and their spans
+    double spacing = 0, clearance = 0;
+    bool is_level = false;  // neither comes over the other: by their widths alone
+  };
   struct Contact {
-    std::array<Form, 8> forms;  // z, slope, half width, half height of the warp; of the weft
+    std::size_t first = 0, second = 0, pair = 0;  // of the warp, of the weft
     double side = 1, along_warp = 0, along_weft = 0, clearance = 0;
     std::size_t warp_run = 0, weft_run = 0;  // places of its stations in runs_
     int warp_place = 0, weft_place = 0;
   };
-  struct Beside {
-    std::array<Form, 8> forms;  // z, slope, half width, half height of both
-    double spacing = 0, clearance = 0;
-  };
-  struct Fold {
-    std::array<Form, 3> forms;  // slope, second derivative, half height
-    double side = 1;
-  };
-  struct Packed {
-    std::array<Form, 2> forms;
-    double least_product = 0;  // of the half sizes
-  };
-  struct Linear {
-    std::array<Form, 1> forms;
-  };
-  // Slopes of a yarn at the places of a half gap, away from the crossing, positive towards the other side.
+  static constexpr int places_a_half_gap = spans_a_gap;
+  // Stations of a half gap; slopes count away from the crossing, positive towards the other side.
   struct Run {
-    std::vector<Form> slopes;
+    std::array<std::size_t, places_a_half_gap + 1> stations{};
     double sign = 1;
   };
   struct Crossing {
     int pick, end;
   };
+  struct StationSums;
+  struct Sums;
 
-  [[nodiscard]] WovenEnergy weighted_energy(const Eigen::VectorXd& x) const;
+  [[nodiscard]] std::vector<Values> values_at(const Eigen::VectorXd& x) const;
+  [[nodiscard]] WovenEnergy weighted_energy(const std::vector<Values>& values,
+                                            const Eigen::VectorXd& x) const;
+  void add_stations(WovenSystem system, Crossing at);
+  [[nodiscard]] Station station_at(WovenSystem system, Crossing at, std::size_t span, double in_span) const;
+  // `place`: of 2 * spans_a_gap a gap, from the crossing.
+  [[nodiscard]] std::size_t station(WovenSystem system, Crossing at, int place) const;
+  [[nodiscard]] std::size_t first_station(WovenSystem system, Crossing at) const;
+  void find_pairs();
+  void find_places();  // of the inequalities that take part
   void add_terms(Crossing at, double share);
   void add_yarn(WovenSystem system, Crossing at, double share);
   void add_contacts(Crossing at);
   std::size_t add_run(WovenSystem system, Crossing at, int direction, double sign);
   void add_beside(WovenSystem system, Crossing at);
-  [[nodiscard]] Point point(WovenSystem system, Crossing at, double gaps) const;
   [[nodiscard]] double gap(WovenSystem system, Crossing at, int from) const;  // along the yarn
   [[nodiscard]] const WovenYarn& yarn(WovenSystem system, Crossing at) const;
   [[nodiscard]] double tension(WovenSystem system) const {
@@ -145,25 +183,38 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] static Crossing along(WovenSystem system, Crossing at, int by) {
     return system == WovenSystem::warp ? Crossing{at.pick + by, at.end} : Crossing{at.pick, at.end + by};
   }
+  [[nodiscard]] std::size_t index(Crossing at) const;
+  [[nodiscard]] Crossing crossing(int index) const { return {index / cloth_.ends(), index % cloth_.ends()}; }
   [[nodiscard]] bool warp_on_top(Crossing at) const;
   [[nodiscard]] int block(int pick, int end) const;
-  [[nodiscard]] int reach_of(const Run& run, const Eigen::VectorXd& x) const;
+  [[nodiscard]] int reach_of(const Run& run, const std::vector<Values>& values) const;
+  [[nodiscard]] std::vector<int> reaches(const std::vector<Values>& values) const;
+  [[nodiscard]] std::array<double, num_of_span> of_unknowns(const Station& station, const Values& first) const;
+  void add_station(const Station& station, const StationSums& sums, Derivatives& made) const;
   template <class Use>
   void for_active(const Use& use) const;
   template <class Use>
   void for_candidates(const Use& use) const;
+  [[nodiscard]] std::size_t first_contact() const {  // of the candidates
+    return packed_.size() + bounds_.size() + besides_.size() + folds_.size();
+  }
 
   WovenCloth cloth_;
   Partition classes_;
   Eigen::Index num_unknowns_ = 0;
+  std::vector<Span> spans_;
+  std::vector<SpanPair> pairs_;
+  std::vector<Station> stations_;
+  Eigen::SparseMatrix<double> places_;
   std::vector<PathTerm> paths_;
   std::vector<SectionTerm> sections_;
-  std::vector<SquareTerm> changes_, holds_;
-  std::vector<Contact> contacts_;
+  std::vector<ChangeTerm> changes_;
+  std::vector<HoldTerm> holds_;
+  std::vector<Packed> packed_;
+  std::vector<Bound> bounds_;
   std::vector<Beside> besides_;
   std::vector<Fold> folds_;
-  std::vector<Packed> packed_;
-  std::vector<Linear> linears_;
+  std::vector<Contact> contacts_;
   std::vector<Run> runs_;
   std::vector<char> is_active_;  // of each candidate, in the order of for_candidates
 };

@@ -159,9 +159,6 @@ std::string equilibrium_text(const fabric::EquilibriumReport& found) {
       "energy",
       fmt::format("bending {:.0f} %, tension {:.0f} %, flattening {:.0f} %, compaction {:.0f} %",
                   100 * found.bending, 100 * found.tension, 100 * found.flattening, 100 * found.compaction));
-  if (!found.is_exact)
-    text += line(
-        "", fmt::format("crossings in {} classes of equal neighbourhoods: approximate", found.num_classes));
   Table table({"system", "section at crossings, mm", "between", "packing", "crimp %", "take-up %"});
   const auto size = [](double width, double height) { return fmt::format("{:.4g} x {:.4g}", width, height); };
   for (const auto& system : found.systems)

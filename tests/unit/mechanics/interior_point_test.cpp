@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
+
+#include "mechanics/dual.h"
 
 namespace selvage::mechanics {
 namespace {
@@ -20,41 +24,53 @@ class SmallProblem final : public BarrierProblem {
   SmallProblem(Function function, std::vector<Function> inequalities, VectorXd equality = {})
       : function_(std::move(function)),
         inequalities_(std::move(inequalities)),
-        equality_(std::move(equality)) {
-    for (int i = 0; i < 2; ++i) forms_[static_cast<std::size_t>(i)].add(i, 1.0);
-  }
+        equality_(std::move(equality)) {}
   [[nodiscard]] Eigen::Index num_unknowns() const override { return 2; }
+  [[nodiscard]] Eigen::SparseMatrix<double> places() const override {
+    return Eigen::Matrix2d::Ones().sparseView() * 0.0;
+  }
   double evaluate(const VectorXd& x, VectorXd& inequalities) const override {
     inequalities.resize(static_cast<Eigen::Index>(inequalities_.size()));
-    const auto at = duals_of(forms_, x);
+    const auto at = duals(x);
     for (std::size_t k = 0; k < inequalities_.size(); ++k)
       inequalities[static_cast<Eigen::Index>(k)] = inequalities_[k](at).value;
     return function_(at).value;
   }
   void differentiate(const VectorXd& x, const VectorXd& multipliers, const VectorXd& weights,
                      Derivatives& made) const override {
-    const auto at = duals_of(forms_, x);
-    made.gradient = VectorXd::Zero(2);
-    add_first(made.gradient, forms_, function_(at), 1.0);
-    add_second(made.second, forms_, function_(at), 1.0, 0.0);
+    const auto at = duals(x);
+    const auto add = [&](const Dual<2>& term, double factor, double outer) {
+      for (int row = 0; row < 2; ++row)
+        for (int column = 0; column <= row; ++column) {
+          const auto i = static_cast<std::size_t>(row), j = static_cast<std::size_t>(column);
+          made.second.coeffRef(row, column) +=
+              factor * term.second_at(i, j) + outer * term.first[i] * term.first[j];
+        }
+    };
+    const Dual<2> function = function_(at);
+    made.gradient = Eigen::Vector2d(function.first[0], function.first[1]);
+    add(function, 1.0, 0.0);
     for (std::size_t k = 0; k < inequalities_.size(); ++k) {
       const auto row = static_cast<Eigen::Index>(k);
       const Dual<2> value = inequalities_[k](at);
-      add_row(made.gradients, forms_, value);
-      add_second(made.second, forms_, value, -multipliers[row], weights[row]);
+      for (int i = 0; i < 2; ++i) made.gradients.add(i, value.first[static_cast<std::size_t>(i)]);
+      made.gradients.end_row();
+      add(value, -multipliers[row], weights[row]);
     }
   }
   [[nodiscard]] VectorXd equality() const override { return equality_; }
 
  private:
-  std::array<Form, 2> forms_;
+  static std::array<Dual<2>, 2> duals(const VectorXd& x) {
+    return {Dual<2>::variable(0, x[0]), Dual<2>::variable(1, x[1])};
+  }
   Function function_;
   std::vector<Function> inequalities_;
   VectorXd equality_;
 };
 
 Minimum solve(const SmallProblem& problem, double x, double y) {
-  BarrierWorkspace workspace(2);
+  BarrierWorkspace workspace;
   Minimum start;
   start.x = Eigen::Vector2d(x, y);
   return minimize(problem, std::move(start), {}, workspace);

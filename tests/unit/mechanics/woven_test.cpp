@@ -67,7 +67,7 @@ TEST(Woven, DerivativesAgreeWithDifferences) {
   cloth.wefts[1].fibre_area = 0.8;
   cloth.clearance = 0.01;
   cloth.thickness = 3.0;
-  WovenProblem problem(cloth, 256);
+  WovenProblem problem(cloth, classes_of(cloth, 256));
   Minimum at;
   at.x = problem.start(0.6);
   std::mt19937 random(7);
@@ -83,14 +83,14 @@ TEST(Woven, DerivativesAgreeWithDifferences) {
   const VectorXd none = VectorXd::Zero(inequalities.size());
   // Of the Lagrangian: gradient by differences of values, second derivatives by differences of gradients.
   const auto gradient_at = [&](const VectorXd& x) -> VectorXd {
-    Derivatives made(problem.num_unknowns());
+    Derivatives made{{}, {}, problem.places()};
     problem.differentiate(x, multipliers, none, made);
     return made.gradient - made.gradients.combined(multipliers, problem.num_unknowns());
   };
-  Derivatives made(problem.num_unknowns());
+  Derivatives made{{}, {}, problem.places()};
   problem.differentiate(at.x, multipliers, none, made);
   const VectorXd gradient = gradient_at(at.x);
-  const Eigen::SparseMatrix<double> second = made.second.lower();
+  const Eigen::SparseMatrix<double> second = made.second;
   constexpr double step = 1e-5;
   for (Eigen::Index k = 0; k < problem.num_unknowns(); k += 5) {
     VectorXd up = at.x, down = at.x, values;
@@ -103,6 +103,12 @@ TEST(Woven, DerivativesAgreeWithDifferences) {
     for (Eigen::Index row = k; row < problem.num_unknowns(); ++row)
       EXPECT_NEAR(second.coeff(row, k), column[row], 1e-5 * (1.0 + std::abs(column[row]))) << row << ' ' << k;
   }
+}
+
+TEST(Woven, SaysWhereARepeatHasTooManyClasses) {
+  const auto refused = find_equilibrium(cloth_of(twill), {.max_classes = 2});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, Kind::limit);
 }
 
 TEST(Woven, IsTheSameInEveryUnit) {
