@@ -24,9 +24,6 @@ struct SystemText {
   std::optional<double> unit;  // millimetres in one; nothing: there are no lengths
   std::optional<Unit> keeps;   // the model's own unit that it is, if any
 
-  [[nodiscard]] bool has_own(const Ini& ini, std::string_view what) const {
-    return ini.find(fmt::format("{} {}", name, what)) != nullptr;
-  }
 };
 
 // The lengths that a system gives for each of its threads; nothing where it is silent. Zero says nothing
@@ -174,32 +171,17 @@ std::vector<std::string> shortest_repeat(std::vector<std::string> names) {
   return names;
 }
 
-fabric::WeaveSystem placed(const Ini& ini, const SystemText& system, double pitch, double usual_diameter,
-                           Unit unit, ThreadNames& threads, TextReport& report) {
+fabric::WeaveSystem placed(const SystemText& system, double pitch, double usual_diameter,
+                           Unit unit, ThreadNames& threads) {
   fabric::WeaveSystem made;
-  made.wif = {.section = system.name,
-              .millimetres = system.unit.value_or(length_units[0].millimetres),
-              .has_spacings = system.has_own(ini, "SPACING"),
-              .has_thicknesses = system.has_own(ini, "THICKNESS")};
+  made.is_drawn = true;
   made.place = system.section->spot.place();
   made.count = static_cast<int>(system.count);
   made.pitch = pitch;
-  bool is_too_thick = false;
-  for (std::size_t i = 0; i < system.count; ++i) {
-    double diameter = usual_diameter;
-    if (system.thicknesses[i]) {
-      const double given = in_unit(*system.thicknesses[i], system, unit);
-      is_too_thick = is_too_thick || given >= pitch;
-      if (given < pitch) diameter = given;
-    }
-    made.threads.push_back(threads.name_of(system.colors[i], diameter, made.place));
-  }
-  if (is_too_thick)
-    report.warning(
-        system.section->spot,
-        fmt::format("the threads of [{}] are as thick as their spacing, which leaves no room for the others "
-                    "between them; their diameter is taken as {:.6g} {}",
-                    system.name, usual_diameter, selvage::name_of(unit)));
+  for (std::size_t i = 0; i < system.count; ++i)
+    made.threads.push_back(threads.name_of(
+        system.colors[i],
+        system.thicknesses[i] ? in_unit(*system.thicknesses[i], system, unit) : usual_diameter, made.place));
   made.threads = shortest_repeat(std::move(made.threads));
   return made;
 }
@@ -223,8 +205,8 @@ Yarns read_yarns(const Ini& ini, const Loom& loom, int ends, int picks, TextRepo
   const double weft_pitch = pitch(weft).value_or(other);
   const double usual_diameter = std::min(warp_pitch, weft_pitch) / 2;
   ThreadNames threads(yarns.threads);
-  yarns.warp = placed(ini, warp, warp_pitch, usual_diameter, yarns.units, threads, report);
-  yarns.weft = placed(ini, weft, weft_pitch, usual_diameter, yarns.units, threads, report);
+  yarns.warp = placed(warp, warp_pitch, usual_diameter, yarns.units, threads);
+  yarns.weft = placed(weft, weft_pitch, usual_diameter, yarns.units, threads);
   return yarns;
 }
 

@@ -34,12 +34,9 @@ double largest_height(double pitch, double spread) {
   return pitch <= 0.0 ? 0.0 : spread - std::sqrt(spread * spread - pitch * pitch);
 }
 
-Obstacle obstacle_of(const AnyBend& bend, const yarn::SectionSize& other, double own_thickness,
-                     double clearance) {
-  if (const auto* pressed = std::get_if<PressedBend>(&bend))
-    return {pressed->flat_share * other.width, pressed->radius};
+Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness, double clearance) {
   const double own = 0.5 * own_thickness + clearance;
-  switch (std::get<Bend>(bend)) {
+  switch (bend) {
     case Bend::round:
       break;
     case Bend::lens:

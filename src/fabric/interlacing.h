@@ -45,15 +45,7 @@ struct Obstacle {
 // What a yarn of this thickness bends round when it crosses a section at this clearance: a circle of its
 // thickness (round), the arc of a lens, or a racetrack.
 enum class Bend { round, lens, racetrack };
-// Or what yarns that press each other do (weave_press.h): level over a share of the other section's width,
-// and then on an arc of this radius.
-struct PressedBend {
-  double flat_share = 0, radius = 0;
-  bool operator==(const PressedBend&) const = default;
-};
-using AnyBend = std::variant<Bend, PressedBend>;
-Obstacle obstacle_of(const AnyBend& bend, const yarn::SectionSize& other, double own_thickness,
-                     double clearance);
+Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness, double clearance);
 
 // A yarn above or below one other: where it is level.
 struct Pass {

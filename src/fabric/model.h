@@ -246,13 +246,6 @@ struct Yarn {
 // What stands in a text of a body beside its thread, its statements and its shape.
 Yarn yarn_like(const yarn::Body& body);
 
-// How a WIF draft says a system's lengths, for remedies in its words.
-struct WifSystem {
-  std::string section;                                 // WARP
-  double millimetres = 1;                              // in one of its units
-  bool has_spacings = false, has_thicknesses = false;  // in sections of their own, which win: [WARP SPACING]
-};
-
 // Threads used in turn: `W1,W2`.
 struct WeaveSystem {
   std::vector<std::string> threads;
@@ -260,7 +253,7 @@ struct WeaveSystem {
   int count = 0;
   double pitch = 0;
   std::optional<double> counted_on{};  // mm: the text counts yarns on a length, an inch or 10 mm
-  std::optional<WifSystem> wif{};
+  bool is_drawn = false;               // a drawing's: its threads are as thick as looks well
 };
 
 struct Draft {

@@ -33,7 +33,7 @@
 #include "fabric/own_loop.h"
 #include "fabric/quantities.h"
 #include "fabric/warpknit_mend.h"
-#include "fabric/weave_press.h"
+#include "mechanics/constants.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/outline.h"
 
@@ -269,7 +269,7 @@ double least_share(const Thread& thread) {
   const bool has_size =
       thread.diameter || (thread.section && yarn::nominal_size(*thread.section).width > 0.0);
   if (has_size || !packing || !thread.linear_density || !thread.fibre_density()) return 1.0;
-  return std::min(1.0, std::sqrt(*packing / densest_packing));
+  return std::min(1.0, std::sqrt(*packing / mechanics::densest_packing));
 }
 
 // Yarns that are thicker than the pitches leave room for, and whose fibres can come closer, are pressed; all

@@ -1,9 +1,8 @@
 // The construction `weave` (formats/txt/README.md): warp i along x at y = (i - 1/2) pitch(warp), weft j along
-// y at x = (j - 1/2) pitch(weft), about z = 0. Paths and sections are in equilibrium (woven_cloth.h), or those
-// of a formula (weave_fit.h): yarns that cross keep 1 % of their thickness (or BuildOptions::gap) and twice the
-// tolerance apart; in a jammed cloth, which has no room for that, they are made thinner, and pressed flat in a
-// denser one (weave_pressed.h). As published: they are twice the tolerance apart at the crossing itself, and
-// touch in a jammed cloth.
+// y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross keep 1 % of their thickness (or
+// BuildOptions::gap) and twice the tolerance apart. Paths and sections are in equilibrium (woven_cloth.h), or
+// those of a formula (weave_fit.h), which makes yarns thinner where they would touch. As published: they are
+// twice the tolerance apart at the crossing itself, and touch in a jammed cloth.
 #include "fabric/constructions.h"
 
 #include <fmt/format.h>
@@ -27,6 +26,13 @@ namespace selvage::fabric {
 namespace {
 
 constexpr int most_layers = 100'000;
+bool is_polygon(const yarn::Section& section) {
+  return std::holds_alternative<yarn::Polygon>(section);
+}
+bool has_form(const yarn::Section& section) {
+  return !std::holds_alternative<yarn::Circle>(section) && !std::holds_alternative<yarn::Ellipse>(section);
+}
+
 // Of a thickness, between the surfaces of yarns that cross: less makes poor tetrahedra of what lies between.
 constexpr double clearance_share = 0.01;
 // Of half of both thicknesses: yarns whose axes lie further apart at their crossings are lifted off each
@@ -75,7 +81,9 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
       as_published_(options.as_published),
       warp_(std::move(warp)),
       weft_(std::move(weft)),
-      has_formula_(asks_for_formula()) {
+      has_only_formula_(!weave.state && (options.as_published || weave.profile || weave.amplitude ||
+                                         any_section(is_polygon))),
+      has_formula_(!weave.state && (has_only_formula_ || weave.pucker || any_section(has_form))) {
   const bool has_cell = fabric.cell.has_value();
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
@@ -101,42 +109,43 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
   data_points_ = sum_of(data_points_, product_of(count, points_of(is_weft)));
 }
 
-// Heights at which yarns pass each other at the clearance, and how much thinner they become for it.
-Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
+// Heights at which yarns of these systems are so far apart at the crossings.
+Result<Heights> WeaveConstruction::heights_at(const System& warp, const System& weft,
+                                              double clearance) const {
   // A sine has room for any height over any pitch.
   const auto [warps_change, wefts_change] = changes_of(drawdown_);
-  const auto formula = [](const std::optional<AnyBend>& bend) {
-    return bend ? std::get<Bend>(*bend) : Bend::round;
-  };
-  const SystemPair pair{&warp_,
-                        &weft_,
-                        formula(warp_bend_),
-                        formula(weft_bend_),
-                        warps_change && warp_bend_,
-                        wefts_change && weft_bend_};
-  const auto heights_at = [&](double clearance) { return share_crimp(pair, weave_.crimp, clearance); };
+  return share_crimp({&warp, &weft, warp_bend_.value_or(Bend::round), weft_bend_.value_or(Bend::round),
+                      warps_change && warp_bend_, wefts_change && weft_bend_},
+                     weave_.crimp, clearance);
+}
+
+Result<WeaveFit> WeaveConstruction::fit_systems(const System& warp, const System& weft) const {
+  return fit_weave({&warp, &weft, &drawdown_, warp_bend_, weft_bend_}, clearance_,
+                   [&](double clearance) { return heights_at(warp, weft, clearance); });
+}
+
+// Heights at which yarns pass each other at the clearance, and how much thinner they become for it.
+Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   if (as_published_ || weave_.amplitude) {
-    Result<Heights> apart = heights_at(clearance_);
-    return apart.ok() ? apart : heights_at(0.0);
+    Result<Heights> apart = heights_at(warp_, weft_, clearance_);
+    return apart.ok() ? apart : heights_at(warp_, weft_, 0.0);
   }
-  Result<WeaveFit> fit =
-      fit_weave({&warp_, &weft_, &drawdown_, warp_bend_, weft_bend_}, clearance_, heights_at);
+  Result<WeaveFit> fit = fit_systems(warp_, weft_);
   const std::string_view unit = name_of(fabric_.units);
   const bool is_thin =
       fit && (!weave_.thickness || thickness_of(warp_, weft_, fit->heights) <= *weave_.thickness);
-  LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
-  // With `profile` a formula is asked for.
-  if (!(has_room(fit) && is_thin) && !weave_.profile && can_press(loose)) {
-    if (std::optional<PressedCloth> pressed = press_cloth(loose))
-      return take(std::move(*pressed), diagnostics);
-    if (weave_.thickness) return too_thick(std::move(loose));
+  // With `profile` a formula is asked for; polygons stay what they are.
+  if (!(has_room(fit) && is_thin) && !weave_.profile && !any_section(is_polygon)) {
     // Of yarns that overlap nothing is built: neither those that cross, nor neighbours of one system.
-    if (!fit || fit->gap <= 0.0 || is_over_dense())
-      return error(Kind::geometry,
-                   fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
-                               "go, have no room to pass each other; {}",
-                               remedies_for(loose)))
+    is_jammed_ = !has_only_formula_ || !fit || fit->gap <= 0.0 || is_over_dense(warp_, weft_);
+    if (is_jammed_)
+      return error(Kind::geometry, "its yarns have no room to pass each other")
           .placed(fit ? weave_.place : fit.error().place);
+    if (!is_thin)
+      return error(Kind::geometry, fmt::format("by the formula the cloth is {:.6g} {} thick, not {:.6g}",
+                                               thickness_of(warp_, weft_, fit->heights), unit,
+                                               *weave_.thickness))
+          .placed(weave_.place);
   }
   if (!fit) return fit.error();
   thinner_ = fit->thinner;
@@ -158,58 +167,65 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
 // Yarns neither overlap nor are lifted off each other by their flanks.
 bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
   return fit && fit->gap > 0.0 &&
-         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) && !is_over_dense();
+         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
+         !is_over_dense(warp_, weft_);
 }
 
-bool WeaveConstruction::is_over_dense() const {
-  return warp_.widest > warp_.closest || weft_.widest > weft_.closest;
-}
-
-Message WeaveConstruction::too_thick(LooseCloth loose) const {
-  const double wanted = *std::exchange(loose.thickness, std::nullopt);
-  const std::string_view unit = name_of(fabric_.units);
-  const std::optional<double> least = least_thickness(loose);
-  return error(Kind::geometry,
-               fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted, unit,
-                           least ? fmt::format("they are pressed to {:.6g} {} at the least", *least, unit)
-                                 : remedies_for(loose)))
-      .placed(weave_.place);
-}
-
-Heights WeaveConstruction::take(PressedCloth pressed, Diagnostics& diagnostics) {
-  std::set<const Thread*> told;
-  const auto tell = [&](const System& loose, const System& now, std::string_view system) {
-    for (std::size_t i = 0; i < loose.threads.size(); ++i) {
-      const Thread& thread = *loose.threads[i].thread;
-      if (!told.insert(&thread).second) continue;
-      std::string text =
-          fmt::format("the {} has no room for thread '{}' as it is: it is {}", system, thread.name,
-                      pressing_of(loose.threads[i], now.threads[i], fabric_.units));
-      // A size that the text gives is not kept; one that follows from the linear density is round by default.
-      const bool has_size = thread.section || thread.diameter;
-      diagnostics.add(
-          (has_size ? warning(Kind::geometry, std::move(text)) : note(Kind::geometry, std::move(text)))
-              .placed(thread.place, fabric_.file));
-    }
-  };
-  tell(warp_, pressed.warp, "warp");
-  tell(weft_, pressed.weft, "weft");
-  diagnostics.add(note(Kind::geometry, fmt::format("with its yarns pressed {} is {:.3g} {} thick",
-                                                   layers() > 1 ? "a layer of the cloth" : "the cloth",
-                                                   pressed.thickness(), name_of(fabric_.units)))
-                      .placed(weave_.place, fabric_.file));
-  warp_ = std::move(pressed.warp);
-  weft_ = std::move(pressed.weft);
-  warp_bend_ = pressed.warp_bend;
-  weft_bend_ = pressed.weft_bend;
-  is_pressed_ = true;
-  return pressed.heights;
+bool WeaveConstruction::is_over_dense(const System& warp, const System& weft) {
+  return warp.widest > warp.closest || weft.widest > weft.closest;
 }
 
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
+  Diagnostics own;
+  Status made = prepare_heights(own);
+  if (!made && is_jammed_ && warp_.text->is_drawn) made = fit_drawing(own);
+  if (!made) return is_jammed_ ? jammed(made.error()) : made;
+  for (const Message& message : own.messages()) diagnostics.add(message);
+  for (int layer = 0; layer < layers(); ++layer) {
+    add_block(Block::Kind::warp, layer, 0, row_of(warp_));
+    add_block(Block::Kind::weft, layer, 0, row_of(weft_));
+  }
+  return {};
+}
+
+// A drawing's threads are as thick as looks well: where they jam, the thickest that have room are built.
+Status WeaveConstruction::fit_drawing(Diagnostics& diagnostics) {
+  constexpr double step = 0.95, least = 0.1, exactness = 0.01;
+  const System warp = warp_, weft = weft_;
+  const auto try_at = [&](double by, Diagnostics& own) {
+    warp_ = scaled(warp, by);
+    weft_ = scaled(weft, by);
+    is_thinner_ = true;
+    is_jammed_ = false;
+    return prepare_heights(own);
+  };
+  const auto fits = [&](double by) {
+    Diagnostics own;
+    return try_at(by, own).ok();
+  };
+  double high = 1.0, low = step;
+  for (; !fits(low); low *= step) {
+    if (!is_jammed_ || low < least) break;
+    high = low;
+  }
+  while (high - low > exactness * low) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? low : high) = middle;
+  }
+  Status made = try_at(low, diagnostics);
+  if (made)
+    warn(weave_.place,
+         fmt::format("the cloth is jammed as it is drawn: its threads are built {:.3g} times as thick, the most "
+                     "that it has room for",
+                     low),
+         diagnostics);
+  return made;
+}
+
+Status WeaveConstruction::prepare_heights(Diagnostics& diagnostics) {
   if (!has_formula_) {
     Status found = prepare_equilibrium(diagnostics);
     if (found || found.error().kind != Kind::limit) return found;
@@ -217,32 +233,31 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
     if (weave_.state)
       return error(Kind::limit, text + "; without 'state' a formula gives heights and sections")
           .placed(weave_.place);
-    has_formula_ = true;
+    has_formula_ = has_only_formula_ = true;
     space_evenly(weft_);
     space_evenly(warp_);
     warn(weave_.place, text + "; a formula gives its heights and sections", diagnostics);
   }
-  return prepare_formula(diagnostics);
+  Status made = prepare_formula(diagnostics);
+  if (made || has_only_formula_ || !is_jammed_) return made;
+  // What the formula has no room for presses its yarns flat.
+  has_formula_ = is_jammed_ = false;
+  space_evenly(weft_);
+  space_evenly(warp_);
+  return prepare_equilibrium(diagnostics);
 }
 
-// A formula has been named, or is that of the sections' form, or nothing else is known of the construction.
-bool WeaveConstruction::asks_for_formula() const {
-  if (weave_.state) return false;
-  const auto has_form = [](const System& system) {
-    return std::any_of(system.threads.begin(), system.threads.end(), [](const WovenThread& woven) {
-      return !std::holds_alternative<yarn::Circle>(woven.section) &&
-             !std::holds_alternative<yarn::Ellipse>(woven.section);
-    });
-  };
-  return as_published_ || weave_.profile || weave_.amplitude || weave_.pucker ||
-         weave_.draft.form == Draft::Form::leno || has_form(warp_) || has_form(weft_);
+bool WeaveConstruction::any_section(bool (*is)(const yarn::Section& section)) const {
+  for (const System* system : {&warp_, &weft_})
+    for (const WovenThread& woven : system->threads)
+      if (is(woven.section)) return true;
+  return false;
 }
 
 Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
-  const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
+  const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
     if (!weave_.profile) {
-      const std::optional<Bend> bend = natural_bend(crossed);
-      return bend ? std::optional<AnyBend>(*bend) : std::nullopt;
+      return natural_bend(crossed);
     }
     switch (*weave_.profile) {
       case Weave::Profile::lenticular:
@@ -282,17 +297,23 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
                                ? 2.0 * *weave_.amplitude + std::max(warp_.thickest, weft_.thickest)
                                : thickness_of(warp_, weft_, heights_);
   layer_pitch_ = thickness + clearance_;
-  for (int layer = 0; layer < layers(); ++layer) {
-    add_block(Block::Kind::warp, layer, 0, row_of(warp_));
-    add_block(Block::Kind::weft, layer, 0, row_of(weft_));
-  }
   return {};
 }
 
 // With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and
 // yarns.
 Message WeaveConstruction::jammed(const Message& failure) const {
-  LooseCloth cloth{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
+  const LooseCloth cloth{warp_, weft_, fabric_.units};
+  if (has_formula_)
+    return error(failure.kind,
+                 fmt::format("the cloth is jammed: {}; {}", failure.text,
+                             remedies_for(cloth,
+                                          [&](const LooseCloth& changed, double) {
+                                            const auto fit = fit_systems(changed.warp, changed.weft);
+                                            return fit && fit->gap > 0.0 &&
+                                                   !is_over_dense(changed.warp, changed.weft);
+                                          })))
+        .placed(failure.place);
   const auto is_found = [&](const LooseCloth& changed, double yarns, const std::optional<double>& thickness) {
     Weave weave = weave_;
     weave.thickness = thickness;
@@ -330,10 +351,10 @@ Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
   }
   Result<ClothInEquilibrium> found =
       ClothInEquilibrium::find({&fabric_, &weave_, &warp_, &weft_, &drawdown_, clearance_});
-  if (!found)
-    return found.error().kind == Kind::geometry && found.error().place.line == weave_.place.line
-               ? jammed(found.error())
-               : found.error();
+  if (!found) {
+    is_jammed_ = found.error().kind == Kind::geometry && found.error().place.line == weave_.place.line;
+    return found.error();
+  }
   equilibrium_ = std::move(*found);
   std::set<const Thread*> told;
   for (const System* system : {&warp_, &weft_})
@@ -352,10 +373,6 @@ Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
     system->thickest = equilibrium_->max_height(system == &weft_);
   }
   layer_pitch_ = equilibrium_->thickness() + clearance_;
-  for (int layer = 0; layer < layers(); ++layer) {
-    add_block(Block::Kind::warp, layer, 0, row_of(warp_));
-    add_block(Block::Kind::weft, layer, 0, row_of(weft_));
-  }
   return {};
 }
 
@@ -463,7 +480,7 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
           weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
       pass.z = on_top ? height : -height;
       pass.below = pass.above =
-          obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(AnyBend(Bend::round)),
+          obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
                       crossed.thread(k).size, thickness, heights_.clearance);
     }
     passes.push_back(pass);
@@ -509,7 +526,7 @@ Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
   const TextPlace text = is_binder ? weave_.binders[block->set].place : weave_.place;
   Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), role, text);
   if (!plan) return plan;
-  if (is_pressed_ && !is_binder) {
+  if (is_thinner_ && !is_binder) {
     const WovenThread& woven = (is_weft ? weft_ : warp_).thread(yarn);
     const double area = yarn::area(plan->spec.section, plan->spec.sizes.front().size);
     if (const std::optional<double> packing = plan->thread.size_packing())

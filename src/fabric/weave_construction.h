@@ -13,7 +13,8 @@
 #include "fabric/leno.h"
 #include "fabric/pucker.h"
 #include "fabric/weave_fit.h"
-#include "fabric/weave_pressed.h"
+#include "fabric/weave_fit.h"
+#include "fabric/weave_remedies.h"
 #include "fabric/weave_system.h"
 #include "fabric/woven_cloth.h"
 
@@ -99,8 +100,10 @@ class WeaveConstruction final : public Construction {
     return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
-  [[nodiscard]] bool asks_for_formula() const;
+  [[nodiscard]] bool any_section(bool (*is)(const yarn::Section& section)) const;
+  Status prepare_heights(Diagnostics& diagnostics);
   Status prepare_formula(Diagnostics& diagnostics);
+  Status fit_drawing(Diagnostics& diagnostics);
   Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
   Status prepare_leno();
@@ -109,12 +112,12 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] Result<double> puckered_gap() const;
   [[nodiscard]] Result<YarnPlan> plan_flat(std::size_t index) const;
   Status plan_leno(YarnPlan& plan, bool is_weft, long long yarn) const;
+  [[nodiscard]] Result<Heights> heights_at(const System& warp, const System& weft, double clearance) const;
+  [[nodiscard]] Result<WeaveFit> fit_systems(const System& warp, const System& weft) const;
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
   [[nodiscard]] bool has_room(const Result<WeaveFit>& fit) const;
   // Neighbours of a system, side by side, overlap.
-  [[nodiscard]] bool is_over_dense() const;
-  [[nodiscard]] Message too_thick(LooseCloth loose) const;
-  [[nodiscard]] Heights take(PressedCloth pressed, Diagnostics& diagnostics);
+  [[nodiscard]] static bool is_over_dense(const System& warp, const System& weft);
   Status prepare_binders(Diagnostics& diagnostics);
   [[nodiscard]] Status check_binder(const Block& block) const;
   void warn_of_widths(Diagnostics& diagnostics) const;
@@ -141,7 +144,9 @@ class WeaveConstruction final : public Construction {
   const Weave& weave_;
   bool as_published_ = false;
   System warp_, weft_;
-  bool has_formula_ = false;  // for heights and sections; else they are in equilibrium
+  bool has_only_formula_ = false;  // for heights and sections, whether it has room or not
+  bool has_formula_ = false;       // where it has room; else they are in equilibrium
+  bool is_jammed_ = false;         // there was no room
   // One a binder line: its thread, and the clearance of its bends from the wefts.
   std::vector<WovenThread> binders_;
   std::vector<double> binder_clearances_;
@@ -152,8 +157,8 @@ class WeaveConstruction final : public Construction {
   std::optional<ClothInEquilibrium> equilibrium_;
   std::optional<LenoShape> leno_;
   std::optional<PuckerShape> pucker_;
-  std::optional<AnyBend> warp_bend_, weft_bend_;  // none: sine
-  bool is_pressed_ = false;                       // sections are not those of the threads
+  std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
+  bool is_thinner_ = false;                    // sections are not those of the threads
   double clearance_ = 0;                          // between yarns that cross
   double thinner_ = 0;  // by which warps and wefts are less thick than their threads
   double layer_pitch_ = 0;

@@ -220,7 +220,7 @@ class DifferentCrossings {
 };
 
 // A yarn through three crossings. `crossed`: the threads there; on_top: its own place.
-PlanePath path_of(const std::optional<AnyBend>& bend, const WovenThread& own,
+PlanePath path_of(const std::optional<Bend>& bend, const WovenThread& own,
                   const std::array<const WovenThread*, 3>& crossed, const std::array<bool, 3>& on_top,
                   double height, double pitch, double clearance) {
   std::array<Pass, 3> passes;
@@ -228,7 +228,7 @@ PlanePath path_of(const std::optional<AnyBend>& bend, const WovenThread& own,
     passes[i].s = (static_cast<double>(i) - 1.0) * pitch;
     passes[i].z = on_top[i] ? height : -height;
     passes[i].below = passes[i].above =
-        obstacle_of(bend.value_or(AnyBend(Bend::round)), crossed[i]->size, own.size.height, clearance);
+        obstacle_of(bend.value_or(Bend::round), crossed[i]->size, own.size.height, clearance);
   }
   return bend ? PlanePath::bent(passes[0], passes[1], passes[2])
               : PlanePath::sine(passes[0], passes[1], passes[2], points_a_wave);
@@ -271,7 +271,7 @@ std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
 
 double crossing_gap(const WovenPair& pair, const Heights& heights, double thinner) {
   // Arcs about round sections of round yarns: nowhere nearer than at the crossing.
-  const std::optional<AnyBend> round = Bend::round;
+  const std::optional<Bend> round = Bend::round;
   if (pair.warp_bend == round && pair.weft_bend == round && is_round(*pair.warp) && is_round(*pair.weft))
     return heights.clearance + thinner;
   double gap = infinity;

@@ -59,7 +59,7 @@ std::pair<bool, bool> changes_of(const Drawdown& drawdown);
 struct WovenPair {
   const System *warp, *weft;
   const Drawdown* drawdown;
-  std::optional<AnyBend> warp_bend, weft_bend;  // none: sine
+  std::optional<Bend> warp_bend, weft_bend;  // none: sine
 };
 
 // The least gap of yarns that cross at these heights, by samples; negative: they overlap. `thinner`: the

@@ -171,7 +171,7 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
     }
     return sum / static_cast<double>(flat.size());
   };
-  const double half = 0.5 * thickness_of(warp_, weft_, heights_);
+  const double half = 0.5 * (layer_pitch_ - clearance_);
   const auto refuse = [&] {
     return error(Kind::geometry,
                  fmt::format(

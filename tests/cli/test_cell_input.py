@@ -21,7 +21,7 @@ thread T
   material fibre
 end
 """
-PLAIN = MATERIALS + "weave\n  warp T 2 pitch 1.5\n  weft T 2 pitch 1.5\n  draft plain\nend\n"
+PLAIN = MATERIALS + "weave\n  warp T 2 pitch 1.5\n  weft T 2 pitch 1.5\n  draft plain\n  profile peirce\nend\n"
 CELL_LINE = 1 + PLAIN.count("\n")
 
 

@@ -188,7 +188,7 @@ class Bad(Case):
             "piece_open": r":6:3: error: .*not closed",
             "piece_crossing": r":10:3: error: .*'a' and line 'c' meet at \(10, 10\)",
             "piece_flat": r":3:1: error: .*no area",
-            "weave_pitch": r":7:3: error: the cloth is jammed: .* Remedies: `pitch 0\.77[0-9]*` for the warp",
+            "weave_pitch": r":5:1: error: the cloth is jammed: .* Remedies: `pitch 0\.67[0-9]*` for the warp",
             "weave_state": r":8:9: error: unknown state 'finshed'; did you mean 'finished'",
             "weave_ragged": r":10:5: error: .*3 signs",
             "lapping_open": r":6:17: error: .*does not close",

@@ -231,7 +231,7 @@ TEST(Slips, AreCuredByTheRemediesOfTheirMessages) {
                                    {warp, "warp cotton 8 0,42"},
                                    {warp, "wrap cotton 8 24/cm"},
                                    {warp, "warp coton 8 24/cm"},
-                                   {warp, "warp cotton 8 62/cm"},
+                                   {warp, "warp cotton 8 80/cm"},
                                    {warp, "warp cotton 8 80/cm"},
                                    {count, "Ne 20\n  color #ff00zz"},
                                    {count, "Ne 20\n  color #12345"},

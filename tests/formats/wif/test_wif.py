@@ -123,48 +123,28 @@ class Reading(WifCase):
         )
         self.assertRegex(messages, r"warning: \[TIEUP\] has shaft 40, and \[WEAVING\] says \d+ shafts")
 
-    def test_remedies_of_a_jammed_draft(self):
-        """In the draft's own words and units, each of them applied: spacings and thicknesses of the systems and of single threads."""
-        head = (
-            "[WIF]\nVersion=1.1\n[CONTENTS]\nTHREADING=true\nTIEUP=true\nTREADLING=true\n"
-            "[THREADING]\n1=1\n2=2\n[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=2\n"
-            "[WEAVING]\nRising Shed=true\nTreadles=2\nShafts=2\n"
-        )
-        path = self.folder / "jammed.wif"
-
-        def apply(remedy):
-            sections = {"WARP": dict(warp), "WEFT": dict(weft)}
-            dropped = re.findall(r"without (\[\w+ \w+\])", remedy)
-            for key, value, section in re.findall(r"`(\w+)=([\d.]+)` in \[(\w+)\]", remedy):
-                sections[section][key] = value
-            path.write_text(
-                head
-                + "".join(
-                    f"[{name}]\n" + "".join(f"{key}={value}\n" for key, value in keys.items())
-                    for name, keys in sections.items()
-                )
-                + "".join(text for name, text in single.items() if name not in dropped)
-            )
-
+    def test_threads_that_have_no_room_are_built_as_thick_as_they_can_be(self):
+        """The same cloth whatever thickness jams, in any unit: no cliff where the drawing has the spacing itself."""
+        built = {}
         for unit, long in (("Centimeters", 1), ("Inches", 1 / 2.54), ("Decipoints", 10 / 25.4 * 720)):
-            common = {"Units": unit, "Threads": 2, "Spacing": 0.04 * long, "Thickness": 0.0272 * long}
-            for single in (
-                {},
-                {
-                    "[WARP SPACING]": f"[WARP SPACING]\n1={0.04 * long}\n2={0.04 * long}\n",
-                    "[WEFT THICKNESS]": f"[WEFT THICKNESS]\n1={0.028 * long}\n2={0.027 * long}\n",
-                },
-            ):
-                warp = weft = common
-                with self.subTest(unit=unit, single=list(single)):
-                    apply("")
-                    message = self.fails(1, "check", path)
-                    remedies = re.search(r"the cloth is jammed: .* Remedies: (.*)", message)[1].split("; or ")
-                    self.assertEqual(len(remedies), 3, message)
-                    self.assertNotRegex(message, "`pitch|`diameter")
-                    for remedy in remedies:
-                        apply(remedy)
-                        self.succeeds("check", path)
+            for share in (0.5, 0.8, 0.99, 1.0, 1.2):
+                system = f"Units={unit}\nThreads=2\nSpacing={0.04 * long}\nThickness={share * 0.04 * long}\n"
+                path = self.folder / "drawn.wif"
+                path.write_text(
+                    "[WIF]\nVersion=1.1\n[CONTENTS]\nTHREADING=true\nTIEUP=true\nTREADLING=true\n"
+                    "[THREADING]\n1=1\n2=2\n[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=2\n"
+                    "[WEAVING]\nRising Shed=true\nTreadles=2\nShafts=2\n"
+                    f"[WARP]\n{system}[WEFT]\n{system}"
+                )
+                with self.subTest(unit=unit, share=share):
+                    messages = self.succeeds("check", path).stderr
+                    times = re.search(r"its threads are built ([\d.]+) times as thick", messages)
+                    self.assertEqual(times is None, share == 0.5, messages)
+                    if times:
+                        built[unit, share] = share * float(times[1])
+        # To the 1 % of the search, and the clearance, which grows with the thickness of the drawing.
+        self.assertLess(max(built.values()) / min(built.values()), 1.03, built)
+        self.assertGreater(min(built.values()), 0.577)  # Peirce's jammed cloth of round threads
 
     def test_colors_that_nobody_takes(self):
         """A default beyond the table, where every thread has a colour of its own."""

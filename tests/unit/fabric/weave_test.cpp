@@ -295,7 +295,8 @@ double least_distance(const YarnPlan& a, const YarnPlan& b) {
 }
 
 TEST(Weave, YarnsKeepOneHundredthOfTheirThicknessFree) {
-  const Fabric fabric = woven(yarn::Circle{0.2}, 0.9, yarn::Circle{0.5}, 0.8);
+  Fabric fabric = woven(yarn::Circle{0.2}, 0.9, yarn::Circle{0.5}, 0.8);
+  weave_of(fabric).profile = Weave::Profile::peirce;
   const YarnPlan warp = plan_of(fabric, "warp_2", {}), weft = plan_of(fabric, "weft_3", {});
   EXPECT_NEAR(least_distance(warp, weft), 0.35 + 0.002, 1e-6);
   EXPECT_EQ(warp.spec.sizes.front().size.height, 0.2);
@@ -303,7 +304,8 @@ TEST(Weave, YarnsKeepOneHundredthOfTheirThicknessFree) {
 
 // No room between them: half of that is taken from the yarns, whose centre lines stay as they are.
 TEST(Weave, YarnsOfAJammedClothBecomeThinnerSoThatTheyDoNotTouch) {
-  const Fabric jammed = square(0.5, std::sqrt(0.75));
+  Fabric jammed = square(0.5, std::sqrt(0.75));
+  weave_of(jammed).profile = Weave::Profile::peirce;
   const YarnPlan warp = plan_of(jammed, "warp_2", {}), weft = plan_of(jammed, "weft_3", {});
   const double thickness = warp.spec.sizes.front().size.height;
   EXPECT_NEAR(thickness, 0.5 - 0.0025, 1e-5);
