@@ -82,11 +82,14 @@ bool lacks_count(Parser& p, std::string_view noun) {
   return true;
 }
 
-// Names used in turn, `a,b`; `4a,2b`: four times one, twice the other.
+// Names used in turn, `a,b`; `4a,2b`, and in a list `4 a, 2 b`: four times one, twice the other.
 void read_threads(Parser& p, std::vector<std::string>& threads) {
+  const std::vector<std::string_view> words = words_of(p.peek_rest());
+  const bool is_list =
+      std::any_of(words.begin(), words.end(), [](std::string_view word) { return word.ends_with(","); });
   do {
     const Spot spot = p.here();
-    const std::size_t times = p.leading_count();
+    const std::size_t times = p.leading_count(is_list);
     const auto thread = p.reference(p.threads);
     if (!thread) continue;
     if (times < 1 || !p.take_listed(times))

@@ -308,10 +308,11 @@ std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_
                                   is_name_with_sign ? fmt::format(": write '{}'", text) : std::string()));
 }
 
-std::size_t Cursor::leading_count() {
+std::size_t Cursor::leading_count(bool with_blank) {
   if (!more()) return 1;
   std::size_t count = 0;
-  const auto [stop, failure] = std::from_chars(at_, end_, count);
+  auto [stop, failure] = std::from_chars(at_, end_, count);
+  while (with_blank && stop != at_ && stop != end_ && (*stop == ' ' || *stop == '\t')) ++stop;
   if (stop == at_ || stop == end_ || (!starts_name(*stop) && *stop != '"')) return 1;
   token_ = at_;
   at_ = stop;

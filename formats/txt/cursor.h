@@ -74,7 +74,8 @@ class Cursor {
   // it in the statement: that is not looked at. A name, or text in quotes; `may_be_empty`: "" is allowed.
   std::optional<std::string_view> name(std::string_view what, bool may_be_empty = false);
   // The 4 of `4a`, a name so many times; 1 where a name stands alone, 0 where there are too many.
-  std::size_t leading_count();
+  // `with_blank`: of `4 a`, too.
+  std::size_t leading_count(bool with_blank = false);
   // The comma of a list of names, with blanks round it, if it comes next.
   bool comma();
   std::optional<double> number(std::string_view what, Measure measure = Measure::plain);

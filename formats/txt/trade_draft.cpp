@@ -20,10 +20,10 @@ using Form = Draft::Form;
 constexpr int max_of_group = 50;  // yarns that go as one
 
 // Denton and Daniels, Textile Terms and Definitions, under each name.
-constexpr std::array<std::string_view, 19> plain_names = {
+constexpr std::array<std::string_view, 20> plain_names = {
     "taffeta",  "poplin",      "tabby",   "calico",  "broadcloth", "muslin",  "voile",
     "canvas",   "percale",     "lawn",    "batiste", "cambric",    "organza", "chambray",
-    "sheeting", "cheesecloth", "gingham", "1/1",     "1x1"};
+    "sheeting", "cheesecloth", "gingham", "ripstop", "1/1",        "1x1"};
 // Equal groups both ways, where no numbers follow 2 x 2.
 constexpr std::array<std::string_view, 4> group_names = {"hopsack", "panama", "matt", "celtic"};
 struct TwillName {

@@ -23,7 +23,6 @@ struct SystemText {
   std::vector<std::optional<double>> thicknesses;
   std::optional<double> unit;  // millimetres in one; nothing: there are no lengths
   std::optional<Unit> keeps;   // the model's own unit that it is, if any
-
 };
 
 // The lengths that a system gives for each of its threads; nothing where it is silent. Zero says nothing
@@ -171,8 +170,8 @@ std::vector<std::string> shortest_repeat(std::vector<std::string> names) {
   return names;
 }
 
-fabric::WeaveSystem placed(const SystemText& system, double pitch, double usual_diameter,
-                           Unit unit, ThreadNames& threads) {
+fabric::WeaveSystem placed(const SystemText& system, double pitch, double usual_diameter, Unit unit,
+                           ThreadNames& threads) {
   fabric::WeaveSystem made;
   made.is_drawn = true;
   made.place = system.section->spot.place();

@@ -21,6 +21,7 @@ fabric::Fabric plain_weave() {
   weave.warp.count = weave.weft.count = 4;
   weave.warp.pitch = weave.weft.pitch = 0.7;
   weave.draft.form = fabric::Draft::Form::plain;
+  weave.profile = fabric::Weave::Profile::peirce;  // without: in equilibrium
 
   fabric::Fabric cloth;
   cloth.title = "Plain weave of round yarns, by Peirce's arcs and straights";

@@ -22,9 +22,9 @@ struct EquilibriumReport {
   // Per crossing, over (tension of a finished cloth) * (mean fibre area)^(3/2); then its fractions.
   double energy = 0;
   double bending = 0, tension = 0, flattening = 0, compaction = 0;
-  int steps = 0;         // of Newton's method, all starts
-  double residual = 0;   // of the gradient, over its scale
-  int num_classes = 0;   // congruence classes of crossings
+  int steps = 0;        // of Newton's method, all starts
+  double residual = 0;  // of the gradient, over its scale
+  int num_classes = 0;  // congruence classes of crossings
 };
 
 }  // namespace selvage::fabric

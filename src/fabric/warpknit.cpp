@@ -33,8 +33,8 @@
 #include "fabric/own_loop.h"
 #include "fabric/quantities.h"
 #include "fabric/warpknit_mend.h"
-#include "mechanics/constants.h"
 #include "fabric/yarn_spec.h"
+#include "mechanics/constants.h"
 #include "yarn/outline.h"
 
 namespace selvage::fabric {

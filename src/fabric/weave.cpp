@@ -142,9 +142,9 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
       return error(Kind::geometry, "its yarns have no room to pass each other")
           .placed(fit ? weave_.place : fit.error().place);
     if (!is_thin)
-      return error(Kind::geometry, fmt::format("by the formula the cloth is {:.6g} {} thick, not {:.6g}",
-                                               thickness_of(warp_, weft_, fit->heights), unit,
-                                               *weave_.thickness))
+      return error(Kind::geometry,
+                   fmt::format("by the formula the cloth is {:.6g} {} thick, not {:.6g}",
+                               thickness_of(warp_, weft_, fit->heights), unit, *weave_.thickness))
           .placed(weave_.place);
   }
   if (!fit) return fit.error();
@@ -218,9 +218,10 @@ Status WeaveConstruction::fit_drawing(Diagnostics& diagnostics) {
   Status made = try_at(low, diagnostics);
   if (made)
     warn(weave_.place,
-         fmt::format("the cloth is jammed as it is drawn: its threads are built {:.3g} times as thick, the most "
-                     "that it has room for",
-                     low),
+         fmt::format(
+             "the cloth is jammed as it is drawn: its threads are built {:.3g} times as thick, the most "
+             "that it has room for",
+             low),
          diagnostics);
   return made;
 }
@@ -305,14 +306,14 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
 Message WeaveConstruction::jammed(const Message& failure) const {
   const LooseCloth cloth{warp_, weft_, fabric_.units};
   if (has_formula_)
-    return error(failure.kind,
-                 fmt::format("the cloth is jammed: {}; {}", failure.text,
-                             remedies_for(cloth,
-                                          [&](const LooseCloth& changed, double) {
-                                            const auto fit = fit_systems(changed.warp, changed.weft);
-                                            return fit && fit->gap > 0.0 &&
-                                                   !is_over_dense(changed.warp, changed.weft);
-                                          })))
+    return error(failure.kind, fmt::format("the cloth is jammed: {}; {}", failure.text,
+                                           remedies_for(cloth,
+                                                        [&](const LooseCloth& changed, double) {
+                                                          const auto fit =
+                                                              fit_systems(changed.warp, changed.weft);
+                                                          return fit && fit->gap > 0.0 &&
+                                                                 !is_over_dense(changed.warp, changed.weft);
+                                                        })))
         .placed(failure.place);
   const auto is_found = [&](const LooseCloth& changed, double yarns, const std::optional<double>& thickness) {
     Weave weave = weave_;
@@ -479,9 +480,8 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
       const double height =
           weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
       pass.z = on_top ? height : -height;
-      pass.below = pass.above =
-          obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
-                      crossed.thread(k).size, thickness, heights_.clearance);
+      pass.below = pass.above = obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
+                                            crossed.thread(k).size, thickness, heights_.clearance);
     }
     passes.push_back(pass);
   }

@@ -13,7 +13,6 @@
 #include "fabric/leno.h"
 #include "fabric/pucker.h"
 #include "fabric/weave_fit.h"
-#include "fabric/weave_fit.h"
 #include "fabric/weave_remedies.h"
 #include "fabric/weave_system.h"
 #include "fabric/woven_cloth.h"
@@ -159,8 +158,8 @@ class WeaveConstruction final : public Construction {
   std::optional<PuckerShape> pucker_;
   std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
   bool is_thinner_ = false;                    // sections are not those of the threads
-  double clearance_ = 0;                          // between yarns that cross
-  double thinner_ = 0;  // by which warps and wefts are less thick than their threads
+  double clearance_ = 0;                       // between yarns that cross
+  double thinner_ = 0;                         // by which warps and wefts are less thick than their threads
   double layer_pitch_ = 0;
   std::vector<Block> blocks_;
   std::uint64_t data_points_ = 0;

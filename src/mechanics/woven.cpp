@@ -77,12 +77,14 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
   // energy is taken: of equal ones (1e-6) that of the first start.
   constexpr double rough = 1e-3, fine = 1e-5, promising = 0.01, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
   constexpr int rough_rounds = 2, max_rounds = 30;
-  // In drafts of more kinds of crossings the systems share their waves from place to place, whatever the start.
+  // In drafts of more kinds of crossings the systems share their waves from place to place, whatever the
+  // start.
   constexpr int most_classes_of_starts = 32;
   Partition classes = classes_of(cloth, options.max_classes);
   if (!classes.is_exact)
-    return error(Kind::limit, fmt::format("the crossings of its repeat of {} x {} are of more than {} classes",
-                                          cloth.ends(), cloth.picks(), options.max_classes));
+    return error(Kind::limit,
+                 fmt::format("the crossings of its repeat of {} x {} are of more than {} classes",
+                             cloth.ends(), cloth.picks(), options.max_classes));
   const double scale = std::sqrt(mean_area(cloth));
   const WovenCloth ratios = scaled(cloth, 1.0 / scale);
   const auto problem = std::make_shared<WovenProblem>(ratios, std::move(classes));

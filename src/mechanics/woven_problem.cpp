@@ -207,9 +207,8 @@ void WovenProblem::find_places() {
         for (const int b : spans_[pairs_[p].second].unknowns) use(a, b, pairs_[p].places[k++]);
     }
   };
-  for_pairs([&](int a, int b, int&) {
-    rows[static_cast<std::size_t>(std::min(a, b))].push_back(std::max(a, b));
-  });
+  for_pairs(
+      [&](int a, int b, int&) { rows[static_cast<std::size_t>(std::min(a, b))].push_back(std::max(a, b)); });
   places_.resize(num_unknowns_, num_unknowns_);
   for (Eigen::Index column = 0; column < num_unknowns_; ++column) {
     std::vector<int>& in_column = rows[static_cast<std::size_t>(column)];
@@ -245,8 +244,8 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
     for (const double rule_weight : rule.weights) {
       const double along = share * 0.5 * rule_weight * length / spans_a_gap, weight = area * along;
       paths_.push_back({node, weight * constants.bending, weight * tension(system), along, system});
-      sections_.push_back({node, weight * constants.flattening * own.stiffness,
-                           weight * constants.compaction, std::log(own.aspect), own.packing, area});
+      sections_.push_back({node, weight * constants.flattening * own.stiffness, weight * constants.compaction,
+                           std::log(own.aspect), own.packing, area});
       ++node;
     }
   for (int half = 0; half < 2; ++half) {
@@ -351,7 +350,8 @@ VectorXd WovenProblem::start(double warp_share) const {
     for (const WovenSystem system : {WovenSystem::warp, WovenSystem::weft}) {
       const double share = system == WovenSystem::warp ? warp_share : warp_share - 1.0;
       const auto rise = [&](Crossing there) {
-        const double both = half_height_at(WovenSystem::warp, there) + half_height_at(WovenSystem::weft, there);
+        const double both =
+            half_height_at(WovenSystem::warp, there) + half_height_at(WovenSystem::weft, there);
         return (warp_on_top(there) ? share : -share) * both;
       };
       const double from = rise(at), to = rise(along(system, at, 1));

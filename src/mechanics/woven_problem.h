@@ -4,8 +4,8 @@
 //
 // A centre line is a cubic B-spline over eight spans from crossing to crossing, a section an ellipse that is
 // given at crossings and half way between them, with smooth steps from one to the next. Crossings of a class
-// (partition.h) have the same unknowns and terms. Every term is a function of what yarns are at one station or
-// at two.
+// (partition.h) have the same unknowns and terms. Every term is a function of what yarns are at one station
+// or at two.
 #pragma once
 
 #include <array>
@@ -116,7 +116,7 @@ class WovenProblem final : public BarrierProblem {
     std::size_t station = 0;
     double flattening = 0, compaction = 0, log_aspect = 0, packing = 0, fibre_area = 0;
   };
-  struct ChangeTerm {  // factor * (difference of the size after the span and before it)^2
+  struct ChangeTerm {                // factor * (difference of the size after the span and before it)^2
     std::size_t span = 0, size = 0;  // size: 0, width; 1, height
     double factor = 0;
   };
@@ -189,7 +189,8 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] int block(int pick, int end) const;
   [[nodiscard]] int reach_of(const Run& run, const std::vector<Values>& values) const;
   [[nodiscard]] std::vector<int> reaches(const std::vector<Values>& values) const;
-  [[nodiscard]] std::array<double, num_of_span> of_unknowns(const Station& station, const Values& first) const;
+  [[nodiscard]] std::array<double, num_of_span> of_unknowns(const Station& station,
+                                                            const Values& first) const;
   void add_station(const Station& station, const StationSums& sums, Derivatives& made) const;
   template <class Use>
   void for_active(const Use& use) const;

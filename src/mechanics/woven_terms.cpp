@@ -86,8 +86,8 @@ T gap_of(const Place& place, const std::array<T, 8>& v) {
   const T weft = of_few<4>(v, {1, 5, 6, 7}, [](const auto& s) {
     return sqrt(square(s[2] * s[0]) + square(s[3]) * (square(s[1]) + 1.0));
   });
-  const T normal = of_few<2>(
-      v, {1, 5}, [](const auto& s) { return sqrt(square(s[0]) + square(s[1]) + 1.0); });
+  const T normal =
+      of_few<2>(v, {1, 5}, [](const auto& s) { return sqrt(square(s[0]) + square(s[1]) + 1.0); });
   return apart - warp - weft - place.clearance * normal;
 }
 // Ellipses side by side, as they are cut across the cloth: how far their axes lie apart, over the ellipse of
@@ -288,8 +288,7 @@ void WovenProblem::differentiate(const VectorXd& x, const VectorXd& multipliers,
       std::array<Values, num_values> cross{};
       for (std::size_t i = 0; i < 8; ++i)
         for (std::size_t j = 0; j <= i; ++j) {
-          const double value =
-              factor * term.second[lower(i, j)] + outer * term.first[i] * term.first[j];
+          const double value = factor * term.second[lower(i, j)] + outer * term.first[i] * term.first[j];
           if (i >= 4 && j < 4)
             cross[of_two[i - 4]][of_two[j]] = value;
           else
@@ -346,7 +345,8 @@ void WovenProblem::differentiate(const VectorXd& x, const VectorXd& multipliers,
   const auto add_row = [&](std::size_t station, const Values& first) {
     const auto by_unknowns = of_unknowns(stations_[station], first);
     for (std::size_t i = 0; i < num_of_span; ++i)
-      if (by_unknowns[i] != 0.0) made.gradients.add(spans_[stations_[station].span].unknowns[i], by_unknowns[i]);
+      if (by_unknowns[i] != 0.0)
+        made.gradients.add(spans_[stations_[station].span].unknowns[i], by_unknowns[i]);
   };
   for_active([&](Index row, const auto& at, const auto& function) {
     const auto term = function(duals_of(values_of(at, values)));

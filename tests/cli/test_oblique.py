@@ -120,7 +120,7 @@ class Oblique(Case):
 
     def test_the_stiffness_of_the_whole_repeat(self):
         """Of linear tetrahedra, whose own error is larger than what is allowed here: their meshes differ."""
-        self.assert_alike(*self.both("--size", "0.5", "--order", "1"), 1e-2)
+        self.assert_alike(*self.both("--size", "0.5", "--order", "1"), 1.2e-2)
 
     def test_the_stiffness_of_the_whole_repeat_by_curved_tetrahedra(self):
         if not os.environ.get("SELVAGE_TABLE"):

@@ -29,7 +29,7 @@ CLOTHS = [
     "braid.txt",
     "ply2_plain.txt",
 ]
-ROUND = ["jersey.txt", "weave_twill22.txt", "braid_diamond.txt", "warpknit_tricot.txt"]
+ROUND = ["jersey.txt", "weave_plain.txt", "braid_diamond.txt", "warpknit_tricot.txt"]
 
 HEAD = "fabric 1\nunits mm\ntolerance 1e-4\nthread rod\n  diameter 0.4\nend\n"
 

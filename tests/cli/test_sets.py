@@ -19,6 +19,7 @@ weave
   warp a 4 pitch 1
   weft a 4 pitch 1
   draft plain
+  profile sine
 end
 """
 LINES = 1540  # four of eight yarns

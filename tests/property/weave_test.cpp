@@ -125,8 +125,8 @@ class Differences {
         expect((crossing.warp_z > crossing.weft_z) == warp_has_to_be_on_top(weave_.draft, i, j), at);
         // Apart by a small part of their thickness; sines by more, which come nearer on their slopes. In
         // equilibrium nothing holds yarns together under floats.
-        const bool is_in_equilibrium = std::holds_alternative<yarn::Ellipse>(warp.spec.section) &&
-                                       warp.spec.sizes.size() > 1;
+        const bool is_in_equilibrium =
+            std::holds_alternative<yarn::Ellipse>(warp.spec.section) && warp.spec.sizes.size() > 1;
         const double least = 0.5 * (thickness(warp, 0, crossing.x) + thickness(weft, 1, crossing.y)),
                      most = weave_.profile == Profile::sine ? 1.3
                             : is_in_equilibrium             ? std::numeric_limits<double>::infinity()

@@ -156,7 +156,8 @@ TEST(DenseWeave, ThePoplinsWarpTakesTheCrimp) {
     EXPECT_FALSE(YarnBuilder::create(fabric, {}, diagnostics).has_value());
     const std::string text = diagnostics.first_error()->text;
     std::smatch found;
-    ASSERT_TRUE(std::regex_search(text, found, std::regex("in equilibrium it is ([0-9.]+) mm at the least"))) << text;
+    ASSERT_TRUE(std::regex_search(text, found, std::regex("in equilibrium it is ([0-9.]+) mm at the least")))
+        << text;
     told.insert(std::stod(found[1]));
   }
   EXPECT_EQ(told.size(), 1U);
@@ -222,7 +223,8 @@ TEST(DenseWeave, TheLeastThicknessIsOneNumber) {
   };
   const std::string text = refusal(0.1);
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(text, found, std::regex("in equilibrium it is ([0-9.]+) mm at the least"))) << text;
+  ASSERT_TRUE(std::regex_search(text, found, std::regex("in equilibrium it is ([0-9.]+) mm at the least")))
+      << text;
   const double least = std::stod(found[1]);
   for (const double share : {0.8, 0.9, 0.95, 0.97, 0.98, 0.99})
     EXPECT_NE(refusal(share * least).find(found[0]), std::string::npos)
