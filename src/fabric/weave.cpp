@@ -283,13 +283,13 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
   }
   Result<Heights> heights = fit_heights(diagnostics);
   if (!heights && is_relaxed) {
-    // Wider than their own sections, pressed ones may need the places that floats would give away.
+    // Yarns may need the places that floats would give away.
     space_evenly(weft_);
     space_evenly(warp_);
     heights = fit_heights(diagnostics);
     if (heights)
       warn(weave_.place,
-           "the spacing is even: yarns that are pressed have no room to move together under floats",
+           "the spacing is even: the yarns have no room to move together under floats",
            diagnostics);
   }
   if (!heights) return heights.error();

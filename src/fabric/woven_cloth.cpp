@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -133,8 +134,8 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
       millimetres_(millimetres_per(text.fabric->units)),
       cloth_(std::move(cloth)),
       equilibrium_(std::move(equilibrium)) {
-  top_ = -1e300;
-  bottom_ = 1e300;
+  bottom_ = std::numeric_limits<double>::infinity();
+  top_ = -bottom_;
   for (const bool is_weft : {false, true}) {
     const int yarns = is_weft ? cloth_.picks() : cloth_.ends(),
               crossings = is_weft ? cloth_.ends() : cloth_.picks();

@@ -128,7 +128,7 @@ TEST(Slips, RemediesOfKnitsAndCords) {
   expect_cured(
       "fabric 1\nthread cord\n  dtex 2800\n  material nylon\n  twist 380 Z\n  plies 2 370 S\nend\n"
       "thread pick\n  Ne 20\n  material cotton\nend\nweave\n  warp cord 8 100/dm\n"
-      "  weft pick 4 10/dm open\n  draft plain\nend\n");
+      "  weft pick 4 10/dm open\n  draft plain\n  profile peirce\nend\n");
 }
 
 TEST(Slips, AreUnderstood) {
