@@ -288,8 +288,7 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
     space_evenly(warp_);
     heights = fit_heights(diagnostics);
     if (heights)
-      warn(weave_.place,
-           "the spacing is even: the yarns have no room to move together under floats",
+      warn(weave_.place, "the spacing is even: the yarns have no room to move together under floats",
            diagnostics);
   }
   if (!heights) return heights.error();
@@ -299,6 +298,29 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
                                : thickness_of(warp_, weft_, heights_);
   layer_pitch_ = thickness + clearance_;
   return {};
+}
+
+// Of a cloth whose thickness is too small: the least one, to three digits, whatever has been asked for. None:
+// it is jammed at any.
+std::optional<double> WeaveConstruction::least_thickness() const {
+  constexpr double step = 0.995;
+  if (!weave_.thickness) return std::nullopt;
+  Weave weave = weave_;
+  const auto find_at = [&](const std::optional<double>& thickness) {
+    weave.thickness = thickness;
+    return ClothInEquilibrium::find({&fabric_, &weave, &warp_, &weft_, &drawdown_, clearance_});
+  };
+  const auto free = find_at(std::nullopt);
+  if (!free) return std::nullopt;
+  // By steps from the thickness that it has by itself: the first has been had, the last not.
+  const auto after = [&](int steps) { return free->thickness() * std::pow(step, steps); };
+  int had = 0,
+      missed = static_cast<int>(std::ceil(std::log(*weave_.thickness / free->thickness()) / std::log(step)));
+  while (missed - had > 1) {
+    const int middle = (had + missed) / 2;
+    (find_at(rounded_up(after(middle))) ? had : missed) = middle;
+  }
+  return rounded_up(after(had));
 }
 
 // With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and
@@ -315,32 +337,21 @@ Message WeaveConstruction::jammed(const Message& failure) const {
                                                                  !is_over_dense(changed.warp, changed.weft);
                                                         })))
         .placed(failure.place);
-  const auto is_found = [&](const LooseCloth& changed, double yarns, const std::optional<double>& thickness) {
-    Weave weave = weave_;
-    weave.thickness = thickness;
-    return ClothInEquilibrium::find(
-               {&fabric_, &weave, &changed.warp, &changed.weft, &drawdown_, clearance_, yarns})
-        .ok();
-  };
-  if (weave_.thickness && is_found(cloth, 1.0, std::nullopt)) {
-    double low = *weave_.thickness, high = 2.0 * low;
-    while (!is_found(cloth, 1.0, high)) high = 2.0 * (low = high);
-    while (high - low > 0.005 * high) {
-      const double middle = 0.5 * (low + high);
-      (is_found(cloth, 1.0, middle) ? high : low) = middle;
-    }
+  if (const std::optional<double> least = least_thickness())
     return error(Kind::geometry,
                  fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
                              "{:.6g} {} at the least",
-                             *weave_.thickness, name_of(fabric_.units), rounded_up(high),
-                             name_of(fabric_.units)))
+                             *weave_.thickness, name_of(fabric_.units), *least, name_of(fabric_.units)))
         .placed(weave_.place);
-  }
-  return error(Kind::geometry, fmt::format("the cloth is jammed: {}; {}", failure.text,
-                                           remedies_for(cloth,
-                                                        [&](const LooseCloth& changed, double yarns) {
-                                                          return is_found(changed, yarns, weave_.thickness);
-                                                        })))
+  return error(Kind::geometry,
+               fmt::format("the cloth is jammed: {}; {}", failure.text,
+                           remedies_for(cloth,
+                                        [&](const LooseCloth& changed, double yarns) {
+                                          return ClothInEquilibrium::find({&fabric_, &weave_, &changed.warp,
+                                                                           &changed.weft, &drawdown_,
+                                                                           clearance_, yarns})
+                                              .ok();
+                                        })))
       .placed(weave_.place);
 }
 

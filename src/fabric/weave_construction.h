@@ -105,6 +105,7 @@ class WeaveConstruction final : public Construction {
   Status fit_drawing(Diagnostics& diagnostics);
   Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
+  [[nodiscard]] std::optional<double> least_thickness() const;
   Status prepare_leno();
   Status prepare_pucker(Diagnostics& diagnostics);
   Status pucker(YarnPlan& plan) const;

@@ -37,6 +37,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class StepSolver {
  public:
   void analyze(const Eigen::SparseMatrix<double>& places) { solver_.analyzePattern(places); }
+  void forget_shift() { last_shift_ = 0.0; }
   // False: no multiple of the identity makes it definite.
   bool factorize(const Eigen::SparseMatrix<double>& matrix) {
     constexpr double smallest_shift = 1e-8;
@@ -80,6 +81,7 @@ struct BarrierWorkspace::State {
 
   // Places that are the same as before keep the order of the factorization.
   void take(Eigen::SparseMatrix<double> places) {
+    solver.forget_shift();
     const auto is_same = [](const int* a, const int* b, Index count) { return std::equal(a, a + count, b); };
     const Eigen::SparseMatrix<double>& old = made.second;
     if (old.rows() == places.rows() && old.nonZeros() == places.nonZeros() &&

@@ -410,7 +410,11 @@ void WovenProblem::set_active(std::vector<char> active) {
 }
 
 bool WovenProblem::update(Minimum& at, double tolerance) {
-  constexpr double near = 0.05;  // what is not further from touching takes part
+  // What is not further from touching takes part; of yarns side by side twice the room, since soft ones widen
+  // by much in one round.
+  constexpr double near = 0.05, near_beside = 3.0;
+  const std::size_t first_beside = packed_.size() + bounds_.size(),
+                    first_fold = first_beside + besides_.size();
   const bool is_first = is_active_.empty();
   const std::vector<Values> values = values_at(at.x);
   const std::vector<int> reach = reaches(values);
@@ -430,7 +434,8 @@ bool WovenProblem::update(Minimum& at, double tolerance) {
           contact.warp_place <= reach[contact.warp_run] && contact.weft_place <= reach[contact.weft_run];
     }
     const bool is_pressing = was_active && at.multipliers[old] > tolerance;
-    bool is_active = is_valid && (was_active || value < near);
+    const bool is_near = value < (index >= first_beside && index < first_fold ? near_beside : near);
+    bool is_active = is_valid && (was_active || is_near || index < packed_.size());
     // What presses and no longer holds has to go; what takes part and does not press may stay.
     if (!is_valid && was_active) is_active = !is_pressing;
     if (is_active != was_active && (is_active ? value < -tolerance : is_pressing)) has_changed = true;
