@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "core/wrapped.h"
@@ -113,6 +114,44 @@ long long Drawdown::repeat_of_picks() const {
 
 long long Drawdown::repeat_of_ends() const {
   return smallest_repeat(ends, picks, [&](long long end, long long pick) { return warp_on_top(pick, end); });
+}
+
+std::string what_falls_apart(const Drawdown& drawdown) {
+  const auto ends = static_cast<std::size_t>(drawdown.ends), picks = static_cast<std::size_t>(drawdown.picks);
+  const auto is_over = [&](std::size_t yarn, std::size_t other) {  // warps first, then wefts
+    return yarn < ends ? drawdown.bits[(other - ends) * ends + yarn]
+                       : !drawdown.bits[(yarn - ends) * ends + other];
+  };
+  const auto crossed_by = [&](std::size_t yarn) {
+    return yarn < ends ? std::pair(ends, ends + picks) : std::pair(std::size_t{0}, ends);
+  };
+  for (std::size_t yarn = 0; yarn < ends + picks; ++yarn) {
+    const auto [from, to] = crossed_by(yarn);
+    std::size_t over = 0;
+    for (std::size_t other = from; other < to; ++other) over += is_over(yarn, other) ? 1 : 0;
+    if (over == 0 || over == to - from)
+      return fmt::format("{} {} lies {} every {}", yarn < ends ? "warp" : "weft",
+                         (yarn < ends ? yarn : yarn - ends) + 1, over == 0 ? "under" : "over",
+                         yarn < ends ? "weft" : "warp");
+  }
+  for (const bool down : {true, false}) {
+    std::vector<bool> is_reached(ends + picks, false);
+    std::vector<std::size_t> next = {0};
+    is_reached[0] = true;
+    while (!next.empty()) {
+      const std::size_t yarn = next.back();
+      next.pop_back();
+      const auto [from, to] = crossed_by(yarn);
+      for (std::size_t other = from; other < to; ++other)
+        if (!is_reached[other] && is_over(yarn, other) == down) {
+          is_reached[other] = true;
+          next.push_back(other);
+        }
+    }
+    if (std::find(is_reached.begin(), is_reached.end(), false) != is_reached.end())
+      return "it is woven in layers";
+  }
+  return {};
 }
 
 Result<Drawdown> drawdown_of(const Draft& draft) {

@@ -37,6 +37,12 @@ struct Drawdown {
 // each end and the next one.
 std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& drawdown);
 
+// Where a cloth falls apart, since yarns lie over others wherever they cross and nothing binds these parts:
+// `weft 5 lies under every warp`, or `it is woven in layers` where each yarn changes sides. Empty where it
+// holds together: from every yarn a chain of yarns, each over the next one, leads to every other one (C. R.
+// J. Clapham, When a fabric hangs together, Bull. London Math. Soc. 12 (1980) 161).
+std::string what_falls_apart(const Drawdown& drawdown);
+
 // plain       10 / 01
 // twill a/b/...  over a, under b, over ...; from a pick to the next one end to the left: a Z twill; to the
 // right: S. Period their sum both ways. satin n/s   weft-faced: one warp on top a pick, s ends further to the

@@ -368,6 +368,11 @@ Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
     return found.error();
   }
   equilibrium_ = std::move(*found);
+  if (const std::string apart = what_falls_apart(drawdown_); !apart.empty())
+    warn(weave_.draft.place.line > 0 ? weave_.draft.place : weave_.place,
+         fmt::format("the cloth does not hold together: {}, and nothing binds them; they lie on each other",
+                     apart),
+         diagnostics);
   std::set<const Thread*> told;
   for (const System* system : {&warp_, &weft_})
     for (const WovenThread& woven : system->threads)

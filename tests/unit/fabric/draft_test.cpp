@@ -140,5 +140,22 @@ TEST(Draft, RefusesWhatIsNoDraft) {
   }
 }
 
+TEST(Draft, WhatFallsApartIsTold) {
+  const auto apart = [](const std::vector<std::string>& rows) {
+    Draft draft;
+    draft.form = Draft::Form::rows;
+    draft.rows = rows;
+    return what_falls_apart(drawdown_of(draft).value());
+  };
+  EXPECT_EQ(apart({"10", "01"}), "");
+  EXPECT_EQ(apart({"110", "011", "101"}), "");
+  EXPECT_EQ(apart({"1100", "1100", "0011", "0011"}), "");
+  EXPECT_EQ(apart({"10", "01", "11"}), "weft 3 lies under every warp");
+  EXPECT_EQ(apart({"100", "010"}), "warp 3 lies under every weft");
+  // Two plain cloths, one on the other; and stitched, where an end of the back goes over a pick of the face.
+  EXPECT_EQ(apart({"1000", "1110", "0010", "1011"}), "it is woven in layers");
+  EXPECT_EQ(apart({"1100", "1110", "0010", "1011"}), "");
+}
+
 }  // namespace
 }  // namespace selvage::fabric
