@@ -13,7 +13,7 @@ namespace selvage::fabric {
 namespace {
 
 Status check_size(long long picks, long long ends, long long most) {
-  if (picks <= most / ends) return {};
+  if (picks <= most / std::max(ends, 1LL)) return {};
   return error(Kind::limit,
                fmt::format("a draft of {} x {} crossings is larger than the {} that are possible{}", picks,
                            ends, most, most < most_crossings ? " without its rows" : ""));

@@ -88,7 +88,7 @@ struct BarrierWorkspace::State {
         is_same(old.outerIndexPtr(), places.outerIndexPtr(), old.cols()) &&
         is_same(old.innerIndexPtr(), places.innerIndexPtr(), old.nonZeros()))
       return;
-    made.second = std::move(places);
+    made.second.swap(places);
     solver.analyze(made.second);
   }
 };

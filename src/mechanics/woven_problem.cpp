@@ -134,10 +134,10 @@ void WovenProblem::add_stations(WovenSystem system, Crossing at) {
     for (int k = 0; k < 4; ++k)
       made.unknowns[static_cast<std::size_t>(k)] = height(system, at.pick, at.end, span - 1 + k);
     const int half = 2 * span / spans_a_gap;
+    std::size_t next = heights_of_span;
     for (int k = 0; k < 2; ++k)
       for (int size = 0; size < 2; ++size)
-        made.unknowns[static_cast<std::size_t>(4 + 2 * k + size)] =
-            width_at(system, at.pick, at.end, half + k) + size;
+        made.unknowns[next++] = width_at(system, at.pick, at.end, half + k) + size;
     spans_.push_back(made);
   }
   const auto span_of = [&](int span) { return first + static_cast<std::size_t>(span); };
