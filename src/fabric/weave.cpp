@@ -208,7 +208,8 @@ Status WeaveConstruction::fit_drawing(Diagnostics& diagnostics) {
   };
   double high = 1.0, low = step;
   for (; !fits(low); low *= step) {
-    if (!is_jammed_ || low < least) break;
+    // Remedies are those of the cloth as it is drawn.
+    if (!is_jammed_ || low < least) return try_at(1.0, diagnostics);
     high = low;
   }
   while (high - low > exactness * low) {
@@ -257,9 +258,7 @@ bool WeaveConstruction::any_section(bool (*is)(const yarn::Section& section)) co
 
 Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
   const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
-    if (!weave_.profile) {
-      return natural_bend(crossed);
-    }
+    if (!weave_.profile) return natural_bend(crossed);
     switch (*weave_.profile) {
       case Weave::Profile::lenticular:
         return Bend::lens;

@@ -74,7 +74,7 @@ double as_shown(const WeaveSystem& system, double pitch, Unit units) {
   return *system.counted_on / rounded_down(*system.counted_on / (pitch * mm)) / mm;
 }
 
-// As the text gives pitches: a distance, or so many on a length. Not closer than it is (file units).
+// In the form of the text: a pitch (file units), or yarns per cm or inch. Not closer than it is.
 std::string shown_pitch(const WeaveSystem& system, double pitch, Unit units) {
   if (!system.counted_on) return fmt::format("`pitch {:.6g}`", rounded_up(pitch));
   return fmt::format("`{:.6g}/{}`", rounded_down(*system.counted_on / (pitch * millimetres_per(units))),
