@@ -54,17 +54,13 @@ Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_roun
 }  // namespace
 
 double WovenEquilibrium::control_height(WovenSystem system, int yarn, int knot) const {
-  const bool is_warp = system == WovenSystem::warp;
-  return scale_ * minimum_.x[problem_->height(system, is_warp ? 0 : yarn, is_warp ? yarn : 0, knot)];
+  return scale_ * minimum_.x[problem_->height(system, yarn, knot)];
 }
 
 WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, double crossings) const {
-  const bool is_warp = system == WovenSystem::warp;
   const double halves = 2.0 * crossings, whole = std::floor(halves), t = halves - whole;
   const double step = t * t * (3.0 - 2.0 * t);
-  const auto at = [&](int half) {
-    return problem_->width_at(system, is_warp ? 0 : yarn, is_warp ? yarn : 0, static_cast<int>(whole) + half);
-  };
+  const auto at = [&](int half) { return problem_->width_at(system, yarn, static_cast<int>(whole) + half); };
   const int from = at(0), to = at(1);
   const auto between = [&](int which) {
     return 2.0 * scale_ * ((1.0 - step) * minimum_.x[from + which] + step * minimum_.x[to + which]);
@@ -84,7 +80,7 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
   if (!classes.is_exact)
     return error(Kind::limit,
                  fmt::format("the crossings of its repeat of {} x {} are of more than {} classes",
-                             cloth.ends(), cloth.picks(), options.max_classes));
+                             cloth.columns(), cloth.rows(), options.max_classes));
   const double scale = std::sqrt(mean_area(cloth));
   const WovenCloth ratios = scaled(cloth, 1.0 / scale);
   const auto problem = std::make_shared<WovenProblem>(ratios, std::move(classes));

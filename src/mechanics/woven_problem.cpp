@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -17,9 +18,9 @@ using std::numbers::pi;
 
 namespace {
 
-// Unknowns of a crossing: heights of the warp up to the next weft and of the weft up to the next warp, half
-// width and half height of the warp here and half way to the next weft, of the weft likewise.
-constexpr int block_size = 2 * spans_a_gap + 8;
+// Unknowns of a crossing: heights of each warp up to the next weft and of each weft up to the next warp; then
+// half width and half height of each warp here and half way to the next weft, of each weft likewise.
+constexpr int sizes_a_strand = 4, block_a_strand = spans_a_gap + sizes_a_strand;
 constexpr int corner_places = 4;  // of the places of a half gap
 constexpr int places_a_gap = 2 * spans_a_gap, nodes_a_span = 2;
 constexpr int stations_a_gap = places_a_gap + nodes_a_span * spans_a_gap;
@@ -32,15 +33,20 @@ int color_of(std::map<T, int>& known, const T& key) {
   return known.try_emplace(key, static_cast<int>(known.size())).first->second;
 }
 
-// Numbers of yarns: the same for yarns of the same kind with the same distances to their neighbours.
-std::vector<int> kinds_of(const std::vector<WovenYarn>& yarns, const std::vector<double>& gaps) {
-  std::map<std::tuple<double, double, double, double, double, double, double>, int> known;
+// Numbers of rows or columns: the same for those of the same kinds of yarns with the same distances to their
+// neighbours. `first`: of each the number of its first yarn.
+template <class First>
+std::vector<int> kinds_of(const std::vector<WovenYarn>& yarns, const std::vector<double>& gaps,
+                          const First& first) {
+  using Kind = std::tuple<double, double, double, double, double>;
+  std::map<std::tuple<std::vector<Kind>, double, double>, int> known;
   std::vector<int> made;
-  for (std::size_t k = 0; k < yarns.size(); ++k) {
-    const WovenYarn& yarn = yarns[k];
-    const double before = gaps[(k + gaps.size() - 1) % gaps.size()];
-    made.push_back(color_of(known, {yarn.fibre_area, yarn.packing, yarn.max_packing, yarn.aspect,
-                                    yarn.stiffness, before, gaps[k]}));
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    std::vector<Kind> kinds;
+    for (auto y = static_cast<std::size_t>(first(k)); y < static_cast<std::size_t>(first(k + 1)); ++y)
+      kinds.emplace_back(yarns[y].fibre_area, yarns[y].packing, yarns[y].max_packing, yarns[y].aspect,
+                         yarns[y].stiffness);
+    made.push_back(color_of(known, {std::move(kinds), gaps[(k + gaps.size() - 1) % gaps.size()], gaps[k]}));
   }
   return made;
 }
@@ -52,49 +58,120 @@ double smooth_step(double t) {
 }  // namespace
 
 Partition classes_of(const WovenCloth& cloth, int max_classes) {
-  const std::vector<int> warps = kinds_of(cloth.warps, cloth.warp_gaps),
-                         wefts = kinds_of(cloth.wefts, cloth.weft_gaps);
-  std::map<std::tuple<int, int, char>, int> known;
+  const auto first_warp = [&](std::size_t column) { return cloth.first_warp(static_cast<int>(column)); };
+  const auto first_weft = [&](std::size_t row) { return static_cast<int>(row) * cloth.wefts_a_row; };
+  const std::vector<int> columns = kinds_of(cloth.warps, cloth.warp_gaps, first_warp),
+                         rows = kinds_of(cloth.wefts, cloth.weft_gaps, first_weft);
+  std::map<std::tuple<int, int, std::string>, int> known;
   std::vector<int> colors;
-  for (std::size_t pick = 0; pick < wefts.size(); ++pick)
-    for (std::size_t end = 0; end < warps.size(); ++end)
-      colors.push_back(
-          color_of(known, {warps[end], wefts[pick], cloth.warp_on_top[pick * warps.size() + end]}));
-  return stable_partition(colors, cloth.picks(), cloth.ends(), max_classes);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      std::string sides;
+      for (int weft = first_weft(row); weft < first_weft(row + 1); ++weft)
+        for (int warp = first_warp(column); warp < first_warp(column + 1); ++warp)
+          sides.push_back(cloth.warp_on_top[static_cast<std::size_t>(weft) * cloth.warps.size() +
+                                            static_cast<std::size_t>(warp)]);
+      colors.push_back(color_of(known, {columns[column], rows[row], std::move(sides)}));
+    }
+  return stable_partition(colors, cloth.rows(), cloth.columns(), max_classes);
 }
 
 WovenProblem::WovenProblem(const WovenCloth& scaled, Partition classes)
     : cloth_(scaled), classes_(std::move(classes)) {
-  num_unknowns_ = static_cast<Eigen::Index>(classes_.count()) * block_size;
   // Of all crossings, times the number of classes: what a class weighs does not depend on how many there are.
   const double crossings = static_cast<double>(classes_.class_of.size()) / classes_.count();
+  first_strands_.push_back(0);
+  for (const int representative : classes_.representatives) {
+    const Crossing at = crossing(representative);
+    first_strands_.push_back(first_strands_.back() + count(WovenSystem::warp, at) +
+                             count(WovenSystem::weft, at));
+  }
+  num_unknowns_ = static_cast<Eigen::Index>(first_strands_.back()) * block_a_strand;
   for (const int representative : classes_.representatives)
-    for (const WovenSystem system : {WovenSystem::warp, WovenSystem::weft})
-      add_stations(system, crossing(representative));
+    for (const Strand strand : strands(crossing(representative)))
+      add_stations(strand, crossing(representative));
   for (std::size_t k = 0; k < classes_.representatives.size(); ++k)
     add_terms(crossing(classes_.representatives[k]), classes_.sizes[k] / crossings);
   find_pairs();
 }
 
 std::size_t WovenProblem::index(Crossing at) const {
-  return static_cast<std::size_t>(wrapped(at.pick, cloth_.picks())) * cloth_.warps.size() +
-         static_cast<std::size_t>(wrapped(at.end, cloth_.ends()));
+  return static_cast<std::size_t>(wrapped(at.pick, cloth_.rows())) * cloth_.warp_gaps.size() +
+         static_cast<std::size_t>(wrapped(at.end, cloth_.columns()));
 }
 
-int WovenProblem::block(int pick, int end) const {
-  return classes_.class_of[index({pick, end})] * block_size;
+int WovenProblem::count(WovenSystem system, Crossing at) const {
+  const int column = wrapped(at.end, cloth_.columns());
+  return system == WovenSystem::weft ? cloth_.wefts_a_row
+                                     : cloth_.first_warp(column + 1) - cloth_.first_warp(column);
 }
 
-int WovenProblem::height(WovenSystem system, int pick, int end, int knot) const {
-  const int at = wrapped(knot, spans_a_gap), by = (knot - at) / spans_a_gap;
-  const Crossing there = along(system, {pick, end}, by);
-  return block(there.pick, there.end) + (system == WovenSystem::warp ? 0 : spans_a_gap) + at;
+std::vector<WovenProblem::Strand> WovenProblem::strands(Crossing at) const {
+  std::vector<Strand> made;
+  for (const WovenSystem system : {WovenSystem::warp, WovenSystem::weft})
+    for (int layer = 0; layer < count(system, at); ++layer) made.push_back({system, layer});
+  return made;
 }
 
-int WovenProblem::width_at(WovenSystem system, int pick, int end, int half) const {
-  const int at = wrapped(half, 2), by = (half - at) / 2;
-  const Crossing there = along(system, {pick, end}, by);
-  return block(there.pick, there.end) + 2 * spans_a_gap + (system == WovenSystem::warp ? 0 : 4) + 2 * at;
+std::size_t WovenProblem::place_of(Strand strand, Crossing at) const {
+  return static_cast<std::size_t>(strand.layer +
+                                  (strand.system == WovenSystem::warp ? 0 : count(WovenSystem::warp, at)));
+}
+
+WovenProblem::Rank WovenProblem::rank(Strand strand, Crossing at) const {
+  const auto below = [&](int layer) {
+    int sum = 0;
+    for (int k = 0; k < count(other(strand.system), at); ++k)
+      sum += (strand.system == WovenSystem::warp ? warp_on_top(at, layer, k) : !warp_on_top(at, k, layer))
+                 ? 1
+                 : 0;
+    return sum;
+  };
+  Rank made{below(strand.layer), 0, 0};
+  for (int layer = 0; layer < count(strand.system, at); ++layer) {
+    if (below(layer) != made.below) continue;
+    ++made.count;
+    if (layer < strand.layer) ++made.place;
+  }
+  return made;
+}
+
+std::pair<WovenProblem::Strand, WovenProblem::Crossing> WovenProblem::located(WovenSystem system,
+                                                                              int yarn) const {
+  if (system == WovenSystem::weft)
+    return {{system, yarn % cloth_.wefts_a_row}, {yarn / cloth_.wefts_a_row, 0}};
+  if (cloth_.first_warps.empty()) return {{system, 0}, {0, yarn}};
+  const auto after = std::upper_bound(cloth_.first_warps.begin(), cloth_.first_warps.end(), yarn);
+  const auto column = static_cast<int>(after - cloth_.first_warps.begin()) - 1;
+  return {{system, yarn - cloth_.first_warp(column)}, {0, column}};
+}
+
+int WovenProblem::block(Crossing at) const {
+  return first_strands_[static_cast<std::size_t>(classes_.class_of[index(at)])] * block_a_strand;
+}
+
+int WovenProblem::height(WovenSystem system, int yarn, int knot) const {
+  const auto [strand, at] = located(system, yarn);
+  return height(strand, at, knot);
+}
+
+int WovenProblem::width_at(WovenSystem system, int yarn, int half) const {
+  const auto [strand, at] = located(system, yarn);
+  return width_at(strand, at, half);
+}
+
+int WovenProblem::height(Strand strand, Crossing at, int knot) const {
+  const int in_gap = wrapped(knot, spans_a_gap);
+  const Crossing there = along(strand.system, at, (knot - in_gap) / spans_a_gap);
+  return block(there) + static_cast<int>(place_of(strand, there)) * spans_a_gap + in_gap;
+}
+
+int WovenProblem::width_at(Strand strand, Crossing at, int half) const {
+  const int in_gap = wrapped(half, 2);
+  const Crossing there = along(strand.system, at, (half - in_gap) / 2);
+  const int count_there = count(WovenSystem::warp, there) + count(WovenSystem::weft, there);
+  return block(there) + count_there * spans_a_gap +
+         static_cast<int>(place_of(strand, there)) * sizes_a_strand + 2 * in_gap;
 }
 
 double WovenProblem::gap(WovenSystem system, Crossing at, int from) const {
@@ -103,54 +180,58 @@ double WovenProblem::gap(WovenSystem system, Crossing at, int from) const {
   return gaps[static_cast<std::size_t>(wrapped(k, static_cast<int>(gaps.size())))];
 }
 
-const WovenYarn& WovenProblem::yarn(WovenSystem system, Crossing at) const {
-  return system == WovenSystem::warp
-             ? cloth_.warps[static_cast<std::size_t>(wrapped(at.end, cloth_.ends()))]
-             : cloth_.wefts[static_cast<std::size_t>(wrapped(at.pick, cloth_.picks()))];
+const WovenYarn& WovenProblem::yarn(Strand strand, Crossing at) const {
+  const int first = strand.system == WovenSystem::warp ? cloth_.first_warp(wrapped(at.end, cloth_.columns()))
+                                                       : wrapped(at.pick, cloth_.rows()) * cloth_.wefts_a_row;
+  return (strand.system == WovenSystem::warp ? cloth_.warps
+                                             : cloth_.wefts)[static_cast<std::size_t>(first + strand.layer)];
 }
 
-bool WovenProblem::warp_on_top(Crossing at) const {
-  return cloth_.warp_on_top[index(at)] != 0;
+bool WovenProblem::warp_on_top(Crossing at, int warp_layer, int weft_layer) const {
+  const auto weft =
+                 static_cast<std::size_t>(wrapped(at.pick, cloth_.rows()) * cloth_.wefts_a_row + weft_layer),
+             warp =
+                 static_cast<std::size_t>(cloth_.first_warp(wrapped(at.end, cloth_.columns())) + warp_layer);
+  return cloth_.warp_on_top[weft * cloth_.warps.size() + warp] != 0;
 }
 
-std::size_t WovenProblem::first_station(WovenSystem system, Crossing at) const {
-  return (2 * static_cast<std::size_t>(classes_.class_of[index(at)]) +
-          (system == WovenSystem::warp ? 0 : 1)) *
+std::size_t WovenProblem::first_station(Strand strand, Crossing at) const {
+  return (static_cast<std::size_t>(first_strands_[static_cast<std::size_t>(classes_.class_of[index(at)])]) +
+          place_of(strand, at)) *
          stations_a_gap;
 }
 
-std::size_t WovenProblem::station(WovenSystem system, Crossing at, int place) const {
+std::size_t WovenProblem::station(Strand strand, Crossing at, int place) const {
   const int in_gap = wrapped(place, places_a_gap);
-  return first_station(system, along(system, at, (place - in_gap) / places_a_gap)) +
+  return first_station(strand, along(strand.system, at, (place - in_gap) / places_a_gap)) +
          static_cast<std::size_t>(in_gap);
 }
 
 // Of the gap from a crossing to the next one along a yarn: at even places, and at the nodes of integration.
-void WovenProblem::add_stations(WovenSystem system, Crossing at) {
+void WovenProblem::add_stations(Strand strand, Crossing at) {
   const std::size_t first = spans_.size();
   for (int span = 0; span < spans_a_gap; ++span) {
     Span made;
     // Function k of the four has its middle at knot span - 1 + k.
-    for (int k = 0; k < 4; ++k)
-      made.unknowns[static_cast<std::size_t>(k)] = height(system, at.pick, at.end, span - 1 + k);
+    for (int k = 0; k < 4; ++k) made.unknowns[static_cast<std::size_t>(k)] = height(strand, at, span - 1 + k);
     const int half = 2 * span / spans_a_gap;
     std::size_t next = heights_of_span;
     for (int k = 0; k < 2; ++k)
-      for (int size = 0; size < 2; ++size)
-        made.unknowns[next++] = width_at(system, at.pick, at.end, half + k) + size;
+      for (int size = 0; size < 2; ++size) made.unknowns[next++] = width_at(strand, at, half + k) + size;
     spans_.push_back(made);
   }
   const auto span_of = [&](int span) { return first + static_cast<std::size_t>(span); };
   for (int place = 0; place < places_a_gap; ++place)
-    stations_.push_back(station_at(system, at, span_of(place / 2), 0.5 * (place % 2)));
+    stations_.push_back(station_at(strand, at, span_of(place / 2), 0.5 * (place % 2)));
   const nurbs::GaussRule& rule = nurbs::gauss_rule(nodes_a_span);
   for (int span = 0; span < spans_a_gap; ++span)
     for (const double node : rule.nodes)
-      stations_.push_back(station_at(system, at, span_of(span), 0.5 + 0.5 * node));
+      stations_.push_back(station_at(strand, at, span_of(span), 0.5 + 0.5 * node));
 }
 
-WovenProblem::Station WovenProblem::station_at(WovenSystem system, Crossing at, std::size_t span,
+WovenProblem::Station WovenProblem::station_at(Strand strand, Crossing at, std::size_t span,
                                                double in_span) const {
+  const WovenSystem system = strand.system;
   Station made;
   made.span = span;
   const auto number = static_cast<int>(span % spans_a_gap);
@@ -182,6 +263,7 @@ void WovenProblem::find_pairs() {
     term.pair = at->second;
   };
   for (Beside& term : besides_) find(term);
+  for (Stack& term : stacks_) find(term);
   for (Contact& term : contacts_) find(term);
 }
 
@@ -190,6 +272,8 @@ void WovenProblem::find_places() {
   const std::size_t first_beside = packed_.size() + bounds_.size();
   for (std::size_t k = 0; k < besides_.size(); ++k)
     if (is_active_[first_beside + k] != 0) is_used[besides_[k].pair] = 1;
+  for (std::size_t k = 0; k < stacks_.size(); ++k)
+    if (is_active_[first_stack() + k] != 0) is_used[stacks_[k].pair] = 1;
   for (std::size_t k = 0; k < contacts_.size(); ++k)
     if (is_active_[first_contact() + k] != 0) is_used[contacts_[k].pair] = 1;
   std::vector<std::vector<int>> rows(static_cast<std::size_t>(num_unknowns_));
@@ -226,20 +310,23 @@ void WovenProblem::find_places() {
 }
 
 void WovenProblem::add_terms(Crossing at, double share) {
-  for (const WovenSystem system : {WovenSystem::warp, WovenSystem::weft}) {
-    add_yarn(system, at, share);
-    add_beside(system, at);
+  for (const Strand strand : strands(at)) {
+    add_yarn(strand, at, share);
+    add_beside(strand, at);
+    if (strand.layer > 0) add_stack(strand, at);
   }
-  add_contacts(at);
+  for (int warp = 0; warp < count(WovenSystem::warp, at); ++warp)
+    for (int weft = 0; weft < count(WovenSystem::weft, at); ++weft) add_contacts(at, warp, weft);
 }
 
 // The gap from a crossing to the next one along a yarn.
-void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
-  const WovenYarn& own = yarn(system, at);
+void WovenProblem::add_yarn(Strand strand, Crossing at, double share) {
+  const WovenSystem system = strand.system;
+  const WovenYarn& own = yarn(strand, at);
   const WovenConstants& constants = cloth_.constants;
   const double length = gap(system, at, 0), area = own.fibre_area;
   const nurbs::GaussRule& rule = nurbs::gauss_rule(nodes_a_span);
-  std::size_t node = first_station(system, at) + places_a_gap;
+  std::size_t node = first_station(strand, at) + places_a_gap;
   for (int span = 0; span < spans_a_gap; ++span)
     for (const double rule_weight : rule.weights) {
       const double along = share * 0.5 * rule_weight * length / spans_a_gap, weight = area * along;
@@ -251,7 +338,7 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
   for (int half = 0; half < 2; ++half) {
     // Fibres leave the axis where the section changes: by the mean of the squares of their slopes, a quarter
     // of that at the surface; the square of the slope of a smooth step is 6/5 in the mean.
-    const std::size_t here = station(system, at, half * spans_a_gap);
+    const std::size_t here = station(strand, at, half * spans_a_gap);
     const double factor = 0.5 * share * area * tension(system) * 0.25 * 1.2 / (0.5 * length);
     for (std::size_t size = 0; size < 2; ++size) changes_.push_back({stations_[here].span, size, factor});
     packed_.push_back({here, area / (pi * own.max_packing)});
@@ -260,7 +347,7 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
     bounds_.push_back(high);
   }
   for (int place = 0; place < places_a_gap; ++place) {
-    const std::size_t here = station(system, at, place);
+    const std::size_t here = station(strand, at, place);
     const bool is_knot = place % 2 == 0;
     if (is_knot) holds_.push_back({here, 0.5 * hold * share * area * length / spans_a_gap});
     for (const double side : {-1.0, 1.0}) {
@@ -279,44 +366,62 @@ void WovenProblem::add_yarn(WovenSystem system, Crossing at, double share) {
   }
 }
 
-// A yarn and the next one of its system, side by side. On one side of the cloth neither comes over the other,
-// and where they change sides they pass at one height.
-void WovenProblem::add_beside(WovenSystem system, Crossing at) {
+// A yarn and those of the next column or row of its system, side by side. Between the same yarns neither
+// comes over the other, and where they change sides they pass at one height.
+void WovenProblem::add_beside(Strand strand, Crossing at) {
   constexpr int places = 8, half = places / 2, every = places_a_gap / places;  // a gap
-  const WovenSystem other = system == WovenSystem::warp ? WovenSystem::weft : WovenSystem::warp;
-  const Crossing next = along(other, at, 1);
-  // How far the yarn is above the next one: by no side, or by one up or down.
-  const auto above = [&](int crossing) {
-    return (warp_on_top(along(system, at, crossing)) ? 1 : 0) -
-           (warp_on_top(along(system, next, crossing)) ? 1 : 0);
-  };
-  const bool is_level_here = above(0) == 0, is_level_next = above(1) == 0,
-             change_sides = above(0) * above(1) < 0;
-  for (int place = 0; place < places; ++place) {
-    const bool is_level =
-        2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
-    besides_.push_back({station(system, at, every * place), station(system, next, every * place), 0,
-                        gap(other, at, 0), cloth_.clearance, is_level && place % half == 0});
+  const WovenSystem system = strand.system, across = other(system);
+  const Crossing next = along(across, at, 1);
+  for (int layer = 0; layer < count(system, next); ++layer) {
+    const Strand beside{system, layer};
+    const auto ranks = [&](int crossing) {
+      return std::pair(rank(strand, along(system, at, crossing)),
+                       rank(beside, along(system, next, crossing)));
+    };
+    // By how much the yarn is above the other one: 0 where nothing tells.
+    const auto above = [&](int crossing) {
+      const auto [own, its] = ranks(crossing);
+      if (own.below != its.below) return own.below - its.below;
+      return own.count == its.count ? own.place - its.place : 0;
+    };
+    const auto is_level_at = [&](int crossing) {
+      const auto [own, its] = ranks(crossing);
+      return own == its;
+    };
+    const bool is_level_here = is_level_at(0), is_level_next = is_level_at(1),
+               change_sides = above(0) * above(1) < 0;
+    for (int place = 0; place < places; ++place) {
+      const bool is_level =
+          2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
+      besides_.push_back({station(strand, at, every * place), station(beside, next, every * place), 0,
+                          gap(across, at, 0), cloth_.clearance, is_level && place % half == 0});
+    }
   }
 }
 
-std::size_t WovenProblem::add_run(WovenSystem system, Crossing at, int direction, double sign) {
+// A yarn and the one below it, up to the next crossing.
+void WovenProblem::add_stack(Strand strand, Crossing at) {
+  const Strand lower{strand.system, strand.layer - 1};
+  for (int place = 0; place < places_a_gap; ++place)
+    stacks_.push_back({station(lower, at, place), station(strand, at, place), 0, cloth_.clearance});
+}
+
+std::size_t WovenProblem::add_run(Strand strand, Crossing at, int direction, double sign) {
   Run run;
   run.sign = sign * direction;
   for (int k = 0; k <= places_a_half_gap; ++k)
-    run.stations[static_cast<std::size_t>(k)] = station(system, at, direction * k);
+    run.stations[static_cast<std::size_t>(k)] = station(strand, at, direction * k);
   runs_.push_back(run);
   return runs_.size() - 1;
 }
 
-void WovenProblem::add_contacts(Crossing at) {
-  const double side = warp_on_top(at) ? 1.0 : -1.0;
+void WovenProblem::add_contacts(Crossing at, int warp_layer, int weft_layer) {
+  const double side = warp_on_top(at, warp_layer, weft_layer) ? 1.0 : -1.0;
+  const Strand warp{WovenSystem::warp, warp_layer}, weft{WovenSystem::weft, weft_layer};
   constexpr int every = places_a_half_gap / corner_places;
   // Both yarns fall away from the crossing: the upper one down, the lower one up.
-  const std::array<std::size_t, 2> warp_runs = {add_run(WovenSystem::warp, at, -1, -side),
-                                                add_run(WovenSystem::warp, at, 1, -side)},
-                                   weft_runs = {add_run(WovenSystem::weft, at, -1, side),
-                                                add_run(WovenSystem::weft, at, 1, side)};
+  const std::array<std::size_t, 2> warp_runs = {add_run(warp, at, -1, -side), add_run(warp, at, 1, -side)},
+                                   weft_runs = {add_run(weft, at, -1, side), add_run(weft, at, 1, side)};
   const auto distance = [&](WovenSystem system, std::size_t d, int place) {
     return 0.5 * place / places_a_half_gap * (d == 0 ? -gap(system, at, -1) : gap(system, at, 0));
   };
@@ -339,29 +444,75 @@ void WovenProblem::add_contacts(Crossing at) {
         for (int m = 1; m <= corner_places; ++m) add(d, every * k, e, every * m);
 }
 
+double WovenProblem::rest_half_height(Strand strand, Crossing at) const {
+  const WovenYarn& own = yarn(strand, at);
+  return std::sqrt(own.fibre_area / (pi * own.packing * own.aspect));
+}
+
+// Of the yarns of a row or column, if they lay straight, with room for those that cross between them.
+std::vector<double> WovenProblem::straight_heights(WovenSystem system, Crossing at) const {
+  const int layers = count(system, at);
+  std::vector<double> heights(static_cast<std::size_t>(layers), 0.0);
+  if (layers == 1) return heights;
+  std::vector<double> room(static_cast<std::size_t>(layers) + 1, 0.0);  // below each, and above all
+  const int crossings = system == WovenSystem::warp ? cloth_.rows() : cloth_.columns();
+  for (int k = 0; k < crossings; ++k) {
+    const Crossing there = along(system, at, k);
+    std::vector<double> needed(room.size(), 0.0);
+    for (int layer = 0; layer < count(other(system), there); ++layer) {
+      const Strand crossed{other(system), layer};
+      needed[static_cast<std::size_t>(rank(crossed, there).below)] += 2.0 * rest_half_height(crossed, there);
+    }
+    for (std::size_t i = 0; i < room.size(); ++i) room[i] = std::max(room[i], needed[i]);
+  }
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    const auto layer = static_cast<int>(i);
+    heights[i] = heights[i - 1] + rest_half_height({system, layer - 1}, at) + room[i] +
+                 rest_half_height({system, layer}, at);
+  }
+  const double middle = 0.5 * (heights.front() + heights.back());
+  for (double& height : heights) height -= middle;
+  return heights;
+}
+
+// Of a yarn, if those of `straight` lay so: beside those that it lies between, or in the middle of them.
+double WovenProblem::height_between(WovenSystem straight, Strand strand, Crossing at) const {
+  const std::vector<double> heights = straight_heights(straight, at);
+  if (strand.system == straight) return heights[static_cast<std::size_t>(strand.layer)];
+  const Rank own = rank(strand, at);
+  double before = 0.0, all = 0.0;  // thicknesses of those between the same two
+  for (int layer = 0; layer < count(strand.system, at); ++layer) {
+    if (rank({strand.system, layer}, at).below != own.below) continue;
+    const double thickness = 2.0 * rest_half_height({strand.system, layer}, at);
+    all += thickness;
+    if (layer < strand.layer) before += thickness;
+  }
+  const double half = rest_half_height(strand, at);
+  const auto surface = [&](int layer, double side) {
+    return heights[static_cast<std::size_t>(layer)] + side * rest_half_height({straight, layer}, at);
+  };
+  if (own.below == static_cast<int>(heights.size())) return surface(own.below - 1, 1.0) + before + half;
+  if (own.below == 0) return surface(0, -1.0) - (all - before - 2.0 * half) - half;
+  return 0.5 * (surface(own.below - 1, 1.0) + surface(own.below, -1.0) - all) + before + half;
+}
+
 VectorXd WovenProblem::start(double warp_share) const {
   VectorXd x = VectorXd::Zero(num_unknowns_);
+  const auto rise = [&](Strand strand, Crossing at) {
+    return warp_share * height_between(WovenSystem::weft, strand, at) +
+           (1.0 - warp_share) * height_between(WovenSystem::warp, strand, at);
+  };
   for (const int representative : classes_.representatives) {
     const Crossing at = crossing(representative);
-    const auto half_height_at = [&](WovenSystem system, Crossing there) {
-      const WovenYarn& own = yarn(system, there);
-      return std::sqrt(own.fibre_area / (pi * own.packing * own.aspect));
-    };
-    for (const WovenSystem system : {WovenSystem::warp, WovenSystem::weft}) {
-      const double share = system == WovenSystem::warp ? warp_share : warp_share - 1.0;
-      const auto rise = [&](Crossing there) {
-        const double both =
-            half_height_at(WovenSystem::warp, there) + half_height_at(WovenSystem::weft, there);
-        return (warp_on_top(there) ? share : -share) * both;
-      };
-      const double from = rise(at), to = rise(along(system, at, 1));
+    for (const Strand strand : strands(at)) {
+      const double from = rise(strand, at), to = rise(strand, along(strand.system, at, 1));
       for (int knot = 0; knot < spans_a_gap; ++knot)
-        x[height(system, at.pick, at.end, knot)] =
+        x[height(strand, at, knot)] =
             from + (to - from) * smooth_step(static_cast<double>(knot) / spans_a_gap);
-      const double height_here = half_height_at(system, at);
+      const double height_here = rest_half_height(strand, at);
       for (int half = 0; half < 2; ++half) {
-        const int width = width_at(system, at.pick, at.end, half);
-        x[width] = yarn(system, at).aspect * height_here;
+        const int width = width_at(strand, at, half);
+        x[width] = yarn(strand, at).aspect * height_here;
         x[width + 1] = height_here;
       }
     }
@@ -376,10 +527,10 @@ VectorXd WovenProblem::equality() const {
     const int representative = classes_.representatives[k];
     const Crossing at = crossing(representative);
     const double share = classes_.sizes[k] / static_cast<double>(classes_.class_of.size());
-    const double side = warp_on_top(at) ? share : -share;
+    const double side = warp_on_top(at, 0, 0) ? share : -share;
     // Of the sum of both, side * (warp - weft), the warp has this share.
     const auto add = [&](WovenSystem system, double by) {
-      const Station& here = stations_[station(system, at, 0)];
+      const Station& here = stations_[station({system, 0}, at, 0)];
       for (std::size_t i = 0; i < heights_of_span; ++i)
         made[spans_[here.span].unknowns[i]] += by * side * here.path[0][i];
     };

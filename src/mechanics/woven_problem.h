@@ -3,13 +3,15 @@
 // finished cloth times that area.
 //
 // A centre line is a cubic B-spline over eight spans from crossing to crossing, a section an ellipse that is
-// given at crossings and half way between them, with smooth steps from one to the next. Crossings of a class
+// given at crossings and half way between them, with smooth steps from one to the next. A crossing is that of
+// a row of wefts and a column of warps, one of each or several above each other. Crossings of a class
 // (partition.h) have the same unknowns and terms. Every term is a function of what yarns are at one station
 // or at two.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "mechanics/constants.h"
@@ -33,16 +35,24 @@ enum class WovenSystem { warp, weft };
 
 // A repeat; all lengths in one unit.
 struct WovenCloth {
+  // Column by column, and row by row; the yarns of one from the lowest, which keep their order.
   std::vector<WovenYarn> warps, wefts;
-  std::vector<double> warp_gaps, weft_gaps;  // from warp k to the next one; from weft k to the next one
-  std::vector<char> warp_on_top;             // picks x ends: 1, or 0
+  std::vector<int> first_warps;  // of each column, and the number of all warps; empty: one in each column
+  int wefts_a_row = 1;
+  std::vector<double> warp_gaps, weft_gaps;  // from column k to the next one; from row k to the next one
+  std::vector<char> warp_on_top;             // wefts x warps: 1, or 0
   double warp_tension = 1, weft_tension = 1;
   double clearance = 0;              // between yarns
   std::optional<double> thickness;   // between plates, at most
-  std::optional<double> warp_share;  // of the waves of both systems, 0 .. 1
+  std::optional<double> warp_share;  // of the waves of both systems, 0 .. 1; of one yarn a row and column
   WovenConstants constants;
   [[nodiscard]] int ends() const { return static_cast<int>(warps.size()); }
   [[nodiscard]] int picks() const { return static_cast<int>(wefts.size()); }
+  [[nodiscard]] int columns() const { return static_cast<int>(warp_gaps.size()); }
+  [[nodiscard]] int rows() const { return static_cast<int>(weft_gaps.size()); }
+  [[nodiscard]] int first_warp(int column) const {
+    return first_warps.empty() ? column : first_warps[static_cast<std::size_t>(column)];
+  }
 };
 
 struct WovenEnergy {
@@ -82,9 +92,10 @@ class WovenProblem final : public BarrierProblem {
   // The deepest violation of any inequality, whether it takes part or not.
   [[nodiscard]] double worst(const Eigen::VectorXd& x) const;
   [[nodiscard]] const Partition& classes() const { return classes_; }
-  // Places of unknowns. `knot`: from the crossing, spans_a_gap a gap. `half`: 2 a gap.
-  [[nodiscard]] int height(WovenSystem system, int pick, int end, int knot) const;
-  [[nodiscard]] int width_at(WovenSystem system, int pick, int end,
+  // Places of unknowns of a yarn of the repeat. `knot`: from its first crossing, spans_a_gap a gap. `half`: 2
+  // a gap.
+  [[nodiscard]] int height(WovenSystem system, int yarn, int knot) const;
+  [[nodiscard]] int width_at(WovenSystem system, int yarn,
                              int half) const;  // half; the next: half the height
 
  private:
@@ -142,6 +153,10 @@ class WovenProblem final : public BarrierProblem {
     double spacing = 0, clearance = 0;
     bool is_level = false;  // neither comes over the other: by their widths alone
   };
+  struct Stack {  // one directly above the other along both, over the same place
+    std::size_t first = 0, second = 0, pair = 0;  // of the lower one, of the upper one
+    double clearance = 0;
+  };
   struct Contact {
     std::size_t first = 0, second = 0, pair = 0;  // of the warp, of the weft
     double side = 1, along_warp = 0, along_weft = 0, clearance = 0;
@@ -155,7 +170,18 @@ class WovenProblem final : public BarrierProblem {
     double sign = 1;
   };
   struct Crossing {
-    int pick, end;
+    int pick, end;  // row, column
+  };
+  // One of a crossing's yarns; layers are numbered from the lowest of each system.
+  struct Strand {
+    WovenSystem system = WovenSystem::warp;
+    int layer = 0;
+  };
+  // Where a yarn is at a crossing: over so many of the other system, and of those of its own that lie between
+  // the same two the how-manieth from below.
+  struct Rank {
+    int below = 0, place = 0, count = 1;
+    bool operator==(const Rank&) const = default;
   };
   struct StationSums;
   struct Sums;
@@ -163,20 +189,30 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] std::vector<Values> values_at(const Eigen::VectorXd& x) const;
   [[nodiscard]] WovenEnergy weighted_energy(const std::vector<Values>& values,
                                             const Eigen::VectorXd& x) const;
-  void add_stations(WovenSystem system, Crossing at);
-  [[nodiscard]] Station station_at(WovenSystem system, Crossing at, std::size_t span, double in_span) const;
+  [[nodiscard]] std::vector<Strand> strands(Crossing at) const;  // warps first
+  [[nodiscard]] int count(WovenSystem system, Crossing at) const;
+  [[nodiscard]] Rank rank(Strand strand, Crossing at) const;
+  [[nodiscard]] std::pair<Strand, Crossing> located(WovenSystem system, int yarn) const;
+  [[nodiscard]] int height(Strand strand, Crossing at, int knot) const;
+  [[nodiscard]] int width_at(Strand strand, Crossing at, int half) const;
+  void add_stations(Strand strand, Crossing at);
+  [[nodiscard]] Station station_at(Strand strand, Crossing at, std::size_t span, double in_span) const;
   // `place`: of 2 * spans_a_gap a gap, from the crossing.
-  [[nodiscard]] std::size_t station(WovenSystem system, Crossing at, int place) const;
-  [[nodiscard]] std::size_t first_station(WovenSystem system, Crossing at) const;
+  [[nodiscard]] std::size_t station(Strand strand, Crossing at, int place) const;
+  [[nodiscard]] std::size_t first_station(Strand strand, Crossing at) const;
   void find_pairs();
   void find_places();  // of the inequalities that take part
   void add_terms(Crossing at, double share);
-  void add_yarn(WovenSystem system, Crossing at, double share);
-  void add_contacts(Crossing at);
-  std::size_t add_run(WovenSystem system, Crossing at, int direction, double sign);
-  void add_beside(WovenSystem system, Crossing at);
+  void add_yarn(Strand strand, Crossing at, double share);
+  void add_contacts(Crossing at, int warp_layer, int weft_layer);
+  std::size_t add_run(Strand strand, Crossing at, int direction, double sign);
+  void add_beside(Strand strand, Crossing at);
+  void add_stack(Strand strand, Crossing at);
+  [[nodiscard]] double rest_half_height(Strand strand, Crossing at) const;
+  [[nodiscard]] std::vector<double> straight_heights(WovenSystem system, Crossing at) const;
+  [[nodiscard]] double height_between(WovenSystem straight, Strand strand, Crossing at) const;
   [[nodiscard]] double gap(WovenSystem system, Crossing at, int from) const;  // along the yarn
-  [[nodiscard]] const WovenYarn& yarn(WovenSystem system, Crossing at) const;
+  [[nodiscard]] const WovenYarn& yarn(Strand strand, Crossing at) const;
   [[nodiscard]] double tension(WovenSystem system) const {
     return system == WovenSystem::warp ? cloth_.warp_tension : cloth_.weft_tension;
   }
@@ -184,9 +220,15 @@ class WovenProblem final : public BarrierProblem {
     return system == WovenSystem::warp ? Crossing{at.pick + by, at.end} : Crossing{at.pick, at.end + by};
   }
   [[nodiscard]] std::size_t index(Crossing at) const;
-  [[nodiscard]] Crossing crossing(int index) const { return {index / cloth_.ends(), index % cloth_.ends()}; }
-  [[nodiscard]] bool warp_on_top(Crossing at) const;
-  [[nodiscard]] int block(int pick, int end) const;
+  [[nodiscard]] Crossing crossing(int index) const {
+    return {index / cloth_.columns(), index % cloth_.columns()};
+  }
+  [[nodiscard]] static WovenSystem other(WovenSystem system) {
+    return system == WovenSystem::warp ? WovenSystem::weft : WovenSystem::warp;
+  }
+  [[nodiscard]] bool warp_on_top(Crossing at, int warp_layer, int weft_layer) const;
+  [[nodiscard]] std::size_t place_of(Strand strand, Crossing at) const;  // among those of the crossing
+  [[nodiscard]] int block(Crossing at) const;
   [[nodiscard]] int reach_of(const Run& run, const std::vector<Values>& values) const;
   [[nodiscard]] std::vector<int> reaches(const std::vector<Values>& values) const;
   [[nodiscard]] std::array<double, num_of_span> of_unknowns(const Station& station,
@@ -196,12 +238,14 @@ class WovenProblem final : public BarrierProblem {
   void for_active(const Use& use) const;
   template <class Use>
   void for_candidates(const Use& use) const;
-  [[nodiscard]] std::size_t first_contact() const {  // of the candidates
+  [[nodiscard]] std::size_t first_stack() const {  // of the candidates
     return packed_.size() + bounds_.size() + besides_.size() + folds_.size();
   }
+  [[nodiscard]] std::size_t first_contact() const { return first_stack() + stacks_.size(); }
 
   WovenCloth cloth_;
   Partition classes_;
+  std::vector<int> first_strands_;  // of each class, and the number of all
   Eigen::Index num_unknowns_ = 0;
   std::vector<Span> spans_;
   std::vector<SpanPair> pairs_;
@@ -215,6 +259,7 @@ class WovenProblem final : public BarrierProblem {
   std::vector<Bound> bounds_;
   std::vector<Beside> besides_;
   std::vector<Fold> folds_;
+  std::vector<Stack> stacks_;
   std::vector<Contact> contacts_;
   std::vector<Run> runs_;
   std::vector<char> is_active_;  // of each candidate, in the order of for_candidates

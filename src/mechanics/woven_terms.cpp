@@ -100,6 +100,15 @@ T beside_of(const Place& place, const std::array<T, 8>& v) {
   return square(place.spacing * reciprocal(width)) + square((v[0] - v[4]) * reciprocal(height)) - 1.0;
 }
 
+// Sections above each other, as they are cut along the cloth: what is free between them.
+template <class T, class Place>
+T stack_of(const Place& place, const std::array<T, 8>& v) {
+  const auto above_axis = [&](const T& half, const T& slope) {
+    return (half + 0.5 * place.clearance) * sqrt(square(slope) + 1.0);
+  };
+  return v[4] - v[0] - above_axis(v[3], v[1]) - above_axis(v[7], v[5]);
+}
+
 // Values of a station by number, of one station or of two.
 template <std::size_t N>
 struct OneStation {
@@ -155,6 +164,8 @@ void WovenProblem::for_candidates(const Use& use) const {
   for (const Fold& p : folds_)
     use(OneStation<3>{p.station, {slope, curvature, half_height}},
         [&](const auto& v) { return pow(square(v[0]) + 1.0, 1.5) - fold_reserve * p.side * v[1] * v[2]; });
+  for (const Stack& p : stacks_)
+    use(TwoStations{p.first, p.second, p.pair}, [&](const auto& v) { return stack_of(p, v); });
   for (const Contact& p : contacts_)
     use(TwoStations{p.first, p.second, p.pair}, [&](const auto& v) { return gap_of(p, v); });
 }
