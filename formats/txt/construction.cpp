@@ -1,6 +1,7 @@
 // The fabrics by construction: `weave`, `knit`, `warpknit`, `braid`.
 #include <fmt/format.h>
 
+#include <charconv>
 #include <numeric>
 
 #include "fabric/draft.h"
@@ -146,7 +147,8 @@ constexpr long long most_shafts_checked = 100;
 // A weave's statements, and the places of those that only the whole block can validate: of its draft, which
 // is required or forbidden, and of its state, which conflicts with other statements.
 struct WeaveBlock : Weave {
-  std::optional<Spot> draft_place, state_place;
+  std::optional<Spot> draft_place, state_place, levels_place;
+  std::vector<Spot> stacked_warps;
 };
 
 void read_warp(Parser& p, WeaveBlock& weave, std::string_view) {
@@ -347,6 +349,61 @@ void read_binder(Parser& p, WeaveBlock& weave, std::string_view) {
   binder.thread = *thread;
   binder.every = *every;
   weave.binders.push_back(std::move(binder));
+}
+
+// A comma may stand right behind it.
+std::optional<int> read_level_of_warp(Parser& p) {
+  const std::string_view word = p.peek_word(), digits = word.substr(0, word.find(','));
+  int level = 0;
+  if (digits.empty() || digits.size() == word.size() ||
+      std::from_chars(digits.data(), digits.data() + digits.size(), level).ptr !=
+          digits.data() + digits.size())
+    return p.count("a level", 0);
+  p.take_bytes(digits.size());
+  return level;
+}
+
+// levels [THREAD] L1 L2 ... , [THREAD] L1 L2 ...
+void read_levels(Parser& p, WeaveBlock& weave, std::string_view) {
+  if (!weave.levels_place) weave.levels_place = p.statement();
+  fabric::WarpColumn column;
+  do {
+    fabric::StackedWarp warp;
+    weave.stacked_warps.push_back(p.here());
+    warp.place = p.here().place();
+    if (p.next_is('"') || (p.next_is_letter() && !p.scope().begins_with_param(p.peek_word())))
+      warp.thread = p.reference(p.threads).value_or("");
+    do
+      if (const auto level = read_level_of_warp(p)) warp.levels.push_back(*level);
+    while (!p.has_failed() && p.more() && !p.next_is(','));
+    column.push_back(std::move(warp));
+  } while (!p.has_failed() && p.comma());
+  if (p.finish()) weave.columns.push_back(std::move(column));
+}
+
+// Reports statements that go with drafts, or with yarns without free paths.
+void check_levels(Parser& p, const WeaveBlock& weave) {
+  if (!weave.levels_place) return;
+  const auto report = [&](std::string_view word, std::string_view why) {
+    p.error(
+        *weave.levels_place,
+        fmt::format("'levels' and '{0}' exclude each other, {1}: leave out '{0}', or the levels", word, why));
+  };
+  if (weave.draft_place) report("draft", "both say which yarn is on top");
+  if (weave.profile) report("profile", "since warps with levels have the paths of least energy");
+  if (!weave.binders.empty()) report("binder", "since a warp with levels binds by itself");
+  if (weave.pucker) report("pucker", "since it goes with one layer");
+  if (weave.crimp) report("crimp", "since warps above each other have crimps of their own");
+  if (weave.spacing) report("spacing", "since it goes with a draft");
+  if (weave.draft_place || weave.profile) return;
+  if (const Result<fabric::Drawdown> made = fabric::drawdown_of(weave.columns, weave.layers.value_or(1));
+      !made && made.error().kind == Kind::malformed) {
+    const TextPlace place = made.error().place;
+    const auto spot = std::ranges::find_if(weave.stacked_warps, [&](const Spot& warp) {
+      return warp.line == place.line && warp.column == place.column;
+    });
+    p.error(spot == weave.stacked_warps.end() ? *weave.levels_place : *spot, made.error().text);
+  }
 }
 
 // --- knit
@@ -718,7 +775,8 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"pucker", read_pucker},
                                         {"thickness", into(&Weave::thickness, a_length("the thickness"))},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
-                                        {"binder", read_binder, Times::any}});
+                                        {"binder", read_binder, Times::any},
+                                        {"levels", read_levels, Times::any}});
   WeaveBlock weave;
   const Spot opened = p.statement();
   weave.place = opened.place();
@@ -726,11 +784,12 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   const int errors = p.report.errors();
   const bool is_closed = p.read_block(word, "", opened, table, weave);
   const bool is_straight = weave.profile == Weave::Profile::straight;
-  if (is_closed && !is_straight && !weave.draft_place) p.error(p.last(), "'weave' ends without its 'draft'");
+  if (is_closed && !is_straight && !weave.draft_place && !weave.levels_place)
+    p.error(p.last(), "'weave' ends without its 'draft'");
   if (is_closed && p.report.errors() == errors) {
     if (is_straight && weave.draft_place)
       p.error(*weave.draft_place, "straight yarns do not interlace: leave out the draft, or the profile");
-    if (!is_straight && !weave.binders.empty())
+    if (!is_straight && !weave.binders.empty() && !weave.levels_place)
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
     const bool is_leno = weave.draft.form == Draft::Form::leno;
     if (is_leno &&
@@ -752,6 +811,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(opened,
               "with a profile its formula makes the thickness: leave out the profile, or the thickness");
     check_state(p, weave);
+    check_levels(p, weave);
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

@@ -235,8 +235,14 @@ constexpr std::array lessons = {
     Lesson{"thickness", "weave", "thickness T", "Yarns are pressed until the cloth is no thicker than T.",
            "thickness 0.18", "length"},
     Lesson{"layers", "weave", "layers N",
-           "So many cloths on each other; with `profile straight` so many layers of warps.", "layers 2", "",
-           "1"},
+           "So many cloths on each other; with `profile straight` so many layers of warps, with `levels` of "
+           "wefts.",
+           "layers 2", "", "1"},
+    Lesson{
+        "levels", "weave", "levels [THREAD] L ... [, [THREAD] L ...]",
+        "The warps above each other in a column, from the lowest, with L layers of weft below each at weft "
+        "1, 2, ...; a line for each column, in turn. In the place of a draft.",
+        "levels 1 0 1 0 , 2 1 2 1"},
     Lesson{"binder", "weave", "binder THREAD every K [first G] levels L ...",
            "Binders in every K-th gap between warps, with L layers of weft below them at weft 1, 2, ...",
            "binder z every 2 levels 3 0"},

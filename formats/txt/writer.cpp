@@ -330,7 +330,7 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   out.line(0, "weave");
   write_system(out, "warp", weave.warp);
   write_system(out, "weft", weave.weft);
-  if (weave.profile != Weave::Profile::straight) write_draft(out, weave.draft);
+  if (weave.profile != Weave::Profile::straight && weave.columns.empty()) write_draft(out, weave.draft);
   if (weave.profile) out.line(1, "profile").word(word_of(profile_words, *weave.profile));
   if (weave.amplitude) out.value(*weave.amplitude);
   if (weave.crimp) out.line(1, "crimp").value(*weave.crimp);
@@ -347,6 +347,14 @@ void write_item(Lines& out, const fabric::Weave& weave) {
     if (binder.first != 1) out.word("first").value(binder.first);
     out.word("levels");
     for (int level : binder.levels) out.value(level);
+  }
+  for (const fabric::WarpColumn& column : weave.columns) {
+    out.line(1, "levels");
+    for (std::size_t k = 0; k < column.size(); ++k) {
+      if (k > 0) out.word(",");
+      if (!column[k].thread.empty()) out.name(column[k].thread);
+      for (const int level : column[k].levels) out.value(level);
+    }
   }
   out.line(0, "end");
 }

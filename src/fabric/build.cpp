@@ -65,6 +65,9 @@ std::vector<std::string> threads_of(const Item& item) {
                           Names names = weave.warp.threads;
                           names.insert(names.end(), weave.weft.threads.begin(), weave.weft.threads.end());
                           for (const Binder& binder : weave.binders) names.push_back(binder.thread);
+                          for (const WarpColumn& column : weave.columns)
+                            for (const StackedWarp& warp : column)
+                              if (!warp.thread.empty()) names.push_back(warp.thread);
                           return names;
                         },
                         [](const Knit& knit) {

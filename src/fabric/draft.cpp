@@ -1,6 +1,7 @@
 #include "fabric/draft.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
@@ -109,12 +110,41 @@ bool Drawdown::warp_on_top(long long pick, long long end) const {
 }
 
 long long Drawdown::repeat_of_picks() const {
-  return smallest_repeat(picks, ends, [&](long long pick, long long end) { return warp_on_top(pick, end); });
+  return smallest_shift(rows(), [&](long long i, long long k) {
+    for (long long layer = 0; layer < layers; ++layer)
+      for (long long end = 0; end < ends; ++end)
+        if (warp_on_top(i * layers + layer, end) != warp_on_top(k * layers + layer, end)) return false;
+    return true;
+  });
 }
 
 long long Drawdown::repeat_of_ends() const {
-  return smallest_repeat(ends, picks, [&](long long end, long long pick) { return warp_on_top(pick, end); });
+  return smallest_shift(columns(), [&](long long i, long long k) {
+    const int a = wrapped(static_cast<int>(i), columns()), b = wrapped(static_cast<int>(k), columns());
+    const int count = first_end(a + 1) - first_end(a);
+    if (first_end(b + 1) - first_end(b) != count) return false;
+    for (long long pick = 0; pick < picks; ++pick)
+      for (int end = 0; end < count; ++end)
+        if (warp_on_top(pick, first_end(a) + end) != warp_on_top(pick, first_end(b) + end)) return false;
+    return true;
+  });
 }
+
+namespace {
+
+std::string name_of_end(const Drawdown& drawdown, int end) {
+  if (drawdown.first_ends.empty()) return fmt::format("warp {}", end + 1);
+  int column = 0;
+  while (drawdown.first_end(column + 1) <= end) ++column;
+  return fmt::format("warp_{}_{}", column + 1, end - drawdown.first_end(column) + 1);
+}
+
+std::string name_of_pick(const Drawdown& drawdown, int pick) {
+  if (drawdown.layers == 1) return fmt::format("weft {}", pick + 1);
+  return fmt::format("layer{}_weft_{}", pick % drawdown.layers + 1, pick / drawdown.layers + 1);
+}
+
+}  // namespace
 
 std::string what_falls_apart(const Drawdown& drawdown) {
   const auto ends = static_cast<std::size_t>(drawdown.ends), picks = static_cast<std::size_t>(drawdown.picks);
@@ -130,9 +160,10 @@ std::string what_falls_apart(const Drawdown& drawdown) {
     std::size_t over = 0;
     for (std::size_t other = from; other < to; ++other) over += is_over(yarn, other) ? 1 : 0;
     if (over == 0 || over == to - from)
-      return fmt::format("{} {} lies {} every {}", yarn < ends ? "warp" : "weft",
-                         (yarn < ends ? yarn : yarn - ends) + 1, over == 0 ? "under" : "over",
-                         yarn < ends ? "weft" : "warp");
+      return fmt::format("{} lies {} every {}",
+                         yarn < ends ? name_of_end(drawdown, static_cast<int>(yarn))
+                                     : name_of_pick(drawdown, static_cast<int>(yarn - ends)),
+                         over == 0 ? "under" : "over", yarn < ends ? "weft" : "warp");
   }
   for (const bool down : {true, false}) {
     std::vector<bool> is_reached(ends + picks, false);
@@ -178,6 +209,75 @@ Result<Drawdown> drawdown_of(const Draft& draft) {
   }
   return error(Kind::unsupported,
                fmt::format("the draft stands in the file '{}', which was not read", draft.file));
+}
+
+namespace {
+
+std::string joined(const std::vector<int>& levels) {
+  return fmt::format("{}", fmt::join(levels, " "));
+}
+
+// Of two warps of a column, the second above the first one.
+Status check_order(const StackedWarp& lower, const StackedWarp& upper) {
+  std::size_t below = 0, first = 0;
+  for (std::size_t k = 0; k < upper.levels.size(); ++k) {
+    if (upper.levels[k] >= lower.levels[k]) continue;
+    if (below++ == 0) first = k;
+  }
+  if (below == 0) return {};
+  bool can_exchange = true;
+  for (std::size_t k = 0; k < upper.levels.size(); ++k)
+    can_exchange = can_exchange && upper.levels[k] <= lower.levels[k];
+  return error(Kind::malformed,
+               fmt::format("at weft {} this warp lies below the one in front of it, at level {} and not {}: "
+                           "warps of a column keep their order, from the lowest; {}",
+                           first + 1, upper.levels[first], lower.levels[first],
+                           can_exchange
+                               ? fmt::format("write '{} , {}'", joined(upper.levels), joined(lower.levels))
+                               : "give it a column, a line 'levels', of its own"))
+      .placed(upper.place);
+}
+
+}  // namespace
+
+Result<Drawdown> drawdown_of(const std::vector<WarpColumn>& columns, int layers) {
+  Drawdown made;
+  made.layers = layers;
+  made.first_ends = {0};
+  if (columns.empty() || columns.front().empty()) return error(Kind::malformed, "a column has no warp");
+  const std::size_t rows = columns.front().front().levels.size();
+  for (const WarpColumn& column : columns) {
+    if (column.empty()) return error(Kind::malformed, "a column has no warp");
+    for (std::size_t k = 0; k < column.size(); ++k) {
+      const StackedWarp& warp = column[k];
+      if (warp.levels.size() != rows || rows == 0)
+        return error(Kind::malformed,
+                     fmt::format("this warp has {} level{}, the first one of the weave has {}: all have as "
+                                 "many, one for each weft of the repeat",
+                                 warp.levels.size(), warp.levels.size() == 1 ? "" : "s", rows))
+            .placed(warp.place);
+      for (const int level : warp.levels)
+        if (level < 0 || level > layers)
+          return error(Kind::malformed,
+                       fmt::format("level {0} is above all wefts: with {1} layer{2} of weft levels go from 0 "
+                                   "to {1}; for level {0} write 'layers {0}'",
+                                   level, layers, layers == 1 ? "" : "s"))
+              .placed(warp.place);
+      if (k > 0)
+        if (Status keeps = check_order(column[k - 1], warp); !keeps) return keeps.error();
+    }
+    made.first_ends.push_back(made.first_ends.back() + static_cast<int>(column.size()));
+  }
+  made.ends = made.first_ends.back();
+  const long long picks = static_cast<long long>(rows) * layers;
+  if (Status fits = check_size(picks, made.ends, most_crossings); !fits)
+    return fits.error().placed(columns.front().front().place);
+  made.picks = static_cast<int>(picks);
+  for (std::size_t row = 0; row < rows; ++row)
+    for (int layer = 0; layer < layers; ++layer)
+      for (const WarpColumn& column : columns)
+        for (const StackedWarp& warp : column) made.bits.push_back(warp.levels[row] > layer);
+  return made;
 }
 
 std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& drawdown) {

@@ -20,14 +20,24 @@ namespace selvage::fabric {
 // second counts, more than five hundred shafts: such a text can have thousands of them.
 inline constexpr long long most_crossings = 100'000'000, most_crossings_by_numbers = 300'000;
 
-// One repeat, `picks` wefts by `ends` warps, both at least 1.
+// One repeat, `picks` wefts by `ends` warps, both at least 1. Where they lie above each other, rows of wefts
+// and columns of warps, each from the lowest.
 struct Drawdown {
   int picks = 0, ends = 0;
-  std::vector<bool> bits;  // picks x ends, pick after pick; true: the warp is on top
+  std::vector<bool> bits;         // picks x ends, pick after pick; true: the warp is on top
+  int layers = 1;                 // wefts of a row
+  std::vector<int> first_ends{};  // of each column, and the number of all; empty: one in each
 
+  [[nodiscard]] int rows() const { return picks / layers; }
+  [[nodiscard]] int columns() const {
+    return first_ends.empty() ? ends : static_cast<int>(first_ends.size()) - 1;
+  }
+  [[nodiscard]] int first_end(int column) const {
+    return first_ends.empty() ? column : first_ends[static_cast<std::size_t>(column)];
+  }
   // Any whole numbers, from 0 (pick 0 is weft 1): the draft repeats both ways.
   [[nodiscard]] bool warp_on_top(long long pick, long long end) const;
-  // The smallest repeat, which may be a part of it: so many picks, so many ends.
+  // The smallest repeat, which may be a part of it: so many rows, so many columns.
   [[nodiscard]] long long repeat_of_picks() const;
   [[nodiscard]] long long repeat_of_ends() const;
   bool operator==(const Drawdown&) const = default;
@@ -38,9 +48,10 @@ struct Drawdown {
 std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& drawdown);
 
 // Where a cloth falls apart, since yarns lie over others wherever they cross and nothing binds these parts:
-// `weft 5 lies under every warp`, or `it is woven in layers` where each yarn changes sides. Empty where it
-// holds together: from every yarn a chain of yarns, each over the next one, leads to every other one (C. R.
-// J. Clapham, When a fabric hangs together, Bull. London Math. Soc. 12 (1980) 161).
+// `weft 5 lies under every warp` (yarns above each other by their names), or `it is woven in layers` where
+// each yarn changes sides. Empty where it holds together: from every yarn a chain of yarns, each over the
+// next one, leads to every other one (C. R. J. Clapham, When a fabric hangs together, Bull. London Math. Soc.
+// 12 (1980) 161).
 std::string what_falls_apart(const Drawdown& drawdown);
 
 // plain       10 / 01
@@ -56,5 +67,9 @@ std::string what_falls_apart(const Drawdown& drawdown);
 // most_crossings; (unsupported) on a draft that is still the name of a file: whoever reads files puts
 // its rows in.
 Result<Drawdown> drawdown_of(const Draft& draft);
+
+// Of warps above each other in columns, and so many layers of weft. Errors, at the warp: unlike numbers of
+// levels, levels beyond 0 .. layers, warps of a column that change their order (malformed); (limit) as above.
+Result<Drawdown> drawdown_of(const std::vector<WarpColumn>& columns, int layers);
 
 }  // namespace selvage::fabric

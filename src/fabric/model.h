@@ -279,6 +279,14 @@ struct Binder {
   std::vector<int> levels;  // at weft 1, 2, ...; how many layers of weft are below it; repeats
 };
 
+// One of the warps that lie above each other in a column, each with its own way through the layers of weft.
+struct StackedWarp {
+  std::string thread;  // empty: that of the column
+  TextPlace place;
+  std::vector<int> levels;  // at weft 1, 2, ...; how many layers of weft are below it; repeats
+};
+using WarpColumn = std::vector<StackedWarp>;  // from the lowest
+
 // Seersucker: warps in stripes, one group longer than the other, so that its stripes stand out of the cloth
 // in waves.
 struct Pucker {
@@ -307,6 +315,7 @@ struct Weave {
   std::optional<Pucker> pucker;
   std::optional<int> layers;
   std::vector<Binder> binders;
+  std::vector<WarpColumn> columns;  // used in turn, in the place of a draft: layers are those of weft
 };
 
 // A user's own loop, as data points from its beginning to its end. Weft knits: x in wales from the left side

@@ -81,9 +81,11 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
       as_published_(options.as_published),
       warp_(std::move(warp)),
       weft_(std::move(weft)),
-      has_only_formula_(!weave.state && (options.as_published || weave.profile || weave.amplitude ||
-                                         any_section(is_polygon))),
-      has_formula_(!weave.state && (has_only_formula_ || weave.pucker || any_section(has_form))) {
+      has_only_formula_(
+          !weave.state && !is_stacked() &&
+          (options.as_published || weave.profile || weave.amplitude || any_section(is_polygon))),
+      has_formula_(!weave.state && !is_stacked() &&
+                   (has_only_formula_ || weave.pucker || any_section(has_form))) {
   const bool has_cell = fabric.cell.has_value();
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
@@ -176,19 +178,36 @@ bool WeaveConstruction::is_over_dense(const System& warp, const System& weft) {
 }
 
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
-  Result<Drawdown> drawdown = drawdown_of(weave_.draft);
-  if (!drawdown) return drawdown.error().placed(weave_.draft.place);
+  Result<Drawdown> drawdown =
+      is_stacked() ? drawdown_of(weave_.columns, layers()) : drawdown_of(weave_.draft);
+  if (!drawdown) return drawdown.error().placed(is_stacked() ? drawdown.error().place : weave_.draft.place);
   drawdown_ = std::move(*drawdown);
   Diagnostics own;
   Status made = prepare_heights(own);
   if (!made && is_jammed_ && warp_.text->is_drawn) made = fit_drawing(own);
   if (!made) return is_jammed_ ? jammed(made.error()) : made;
   for (const Message& message : own.messages()) diagnostics.add(message);
+  if (is_stacked()) add_stacked_blocks();
   for (int layer = 0; layer < layers(); ++layer) {
-    add_block(Block::Kind::warp, layer, 0, row_of(warp_));
+    if (!is_stacked()) add_block(Block::Kind::warp, layer, 0, row_of(warp_));
     add_block(Block::Kind::weft, layer, 0, row_of(weft_));
   }
   return {};
+}
+
+// One for each warp of the columns that the text says.
+void WeaveConstruction::add_stacked_blocks() {
+  const auto step = static_cast<long long>(weave_.columns.size());
+  for (long long column = 0; column < step; ++column)
+    for (std::size_t layer = 0; layer < weave_.columns[static_cast<std::size_t>(column)].size(); ++layer) {
+      Row row = row_of(warp_);
+      row.count = (row.count - column + step - 1) / step;
+      row.first += static_cast<double>(column) * row.step;
+      row.step *= static_cast<double>(step);
+      add_block(Block::Kind::warp, static_cast<int>(layer), 0, row);
+      blocks_.back().columns = step;
+      blocks_.back().first_column = column;
+    }
 }
 
 // A drawing's threads are as thick as looks well: where they jam, the thickest that have room are built.
@@ -232,8 +251,10 @@ Status WeaveConstruction::prepare_heights(Diagnostics& diagnostics) {
     Status found = prepare_equilibrium(diagnostics);
     if (found || found.error().kind != Kind::limit) return found;
     const std::string text = fmt::format("no equilibrium of the cloth is looked for: {}", found.error().text);
-    if (weave_.state)
-      return error(Kind::limit, text + "; without 'state' a formula gives heights and sections")
+    if (weave_.state || is_stacked())
+      return error(Kind::limit,
+                   text + (is_stacked() ? "; a shorter repeat has fewer"
+                                        : "; without 'state' a formula gives heights and sections"))
           .placed(weave_.place);
     has_formula_ = has_only_formula_ = true;
     space_evenly(weft_);
@@ -368,7 +389,9 @@ Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
   }
   equilibrium_ = std::move(*found);
   if (const std::string apart = what_falls_apart(drawdown_); !apart.empty())
-    warn(weave_.draft.place.line > 0 ? weave_.draft.place : weave_.place,
+    warn(is_stacked()                  ? weave_.columns.front().front().place
+         : weave_.draft.place.line > 0 ? weave_.draft.place
+                                       : weave_.place,
          fmt::format("the cloth does not hold together: {}, and nothing binds them; they lie on each other",
                      apart),
          diagnostics);
@@ -431,7 +454,8 @@ WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
   const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), index,
                                       [](std::size_t i, const Block& block) { return i < block.first; });
   const Block& block = *std::prev(after);
-  return {&block, block.begin + static_cast<long long>(index - block.first)};
+  const long long number = block.begin + static_cast<long long>(index - block.first);
+  return {&block, block.first_column + number * block.columns};
 }
 
 std::string WeaveConstruction::system(std::size_t index) const {
@@ -458,6 +482,8 @@ std::string WeaveConstruction::name(std::size_t index) const {
     }
     return fmt::format("binder_{}", number);
   }
+  if (is_stacked() && block->kind == Block::Kind::warp)
+    return fmt::format("warp_{}_{}", yarn + 1, block->layer + 1);
   const std::string_view kind = block->kind == Block::Kind::warp ? "warp" : "weft";
   const std::string layer =
       layers() > 1 || is_straight() ? fmt::format("layer{}_", block->layer + 1) : std::string();
@@ -467,7 +493,7 @@ std::string WeaveConstruction::name(std::size_t index) const {
 const Thread& WeaveConstruction::thread(std::size_t index) const {
   const auto [block, yarn] = place_of(index);
   if (block->kind == Block::Kind::binder) return *binders_[block->set].thread;
-  return *(block->kind == Block::Kind::warp ? warp_ : weft_).thread(yarn).thread;
+  return *(block->kind == Block::Kind::warp ? warp_ : weft_).thread(yarn, block->layer).thread;
 }
 
 double WeaveConstruction::straight_z(bool is_weft, int layer) const {
@@ -566,7 +592,8 @@ Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
   }
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
   if (equilibrium_) {
-    equilibrium_->shape(*plan, is_weft, yarn, reach.from, reach.to, to_place);
+    equilibrium_->shape(*plan, {is_weft, yarn, is_stacked() ? block->layer : 0}, reach.from, reach.to,
+                        to_place);
     return plan;
   }
   const std::vector<Pass> passes = passes_of(place);
@@ -607,6 +634,8 @@ Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Wea
   if (!warp) return warp.error();
   Result<System> weft = system_of(fabric, weave.weft);
   if (!weft) return weft.error();
+  if (!weave.columns.empty())
+    if (Status stacked = stack_columns(*warp, fabric, weave.columns); !stacked) return stacked.error();
   auto made = std::make_unique<WeaveConstruction>(fabric, weave, options, std::move(*warp), std::move(*weft));
   if (Status prepared = made->prepare(diagnostics); !prepared) return prepared.error();
   return std::unique_ptr<Construction>(std::move(made));

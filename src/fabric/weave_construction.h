@@ -35,6 +35,8 @@ struct Block {
   std::size_t first = 0, count = 0;
   long long begin = 0;       // the number of its first yarn: below 0 before the cloth's edge
   std::size_t in_cloth = 0;  // of them, those that the text counts: 0, 1, ...
+  // Of warps in columns: the columns from one to the next, and the first one's.
+  long long columns = 1, first_column = 0;
 };
 
 // Yarns side by side: how many the text counts, where they lie, and how wide they are.
@@ -76,7 +78,7 @@ class WeaveConstruction final : public Construction {
  private:
   struct Place {
     const Block* block;
-    long long yarn;  // its number: from 0 in the cloth
+    long long yarn;  // its number: from 0 in the cloth; of warps in columns the column's
   };
   [[nodiscard]] Place place_of(std::size_t index) const;
   // Data points of a weft, or of a yarn along the warp.
@@ -91,6 +93,9 @@ class WeaveConstruction final : public Construction {
   }
   [[nodiscard]] bool is_straight() const { return weave_.profile == Weave::Profile::straight; }
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
+  // Warps and wefts lie above each other in one cloth; else layers are cloths, or of straight yarns.
+  [[nodiscard]] bool is_stacked() const { return !weave_.columns.empty(); }
+  void add_stacked_blocks();
   void add_block(Block::Kind kind, int layer, std::size_t set, const Row& row);
   [[nodiscard]] static Row row_of(const System& system) {
     // Yarns off their even places reach further.
@@ -137,7 +142,9 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] long long repeat_of_binders() const;
   [[nodiscard]] long long repeat_of_levels() const;
   [[nodiscard]] std::vector<Pass> passes_of(const Place& place) const;
-  [[nodiscard]] double layer_shift(int layer) const { return (layer - 0.5 * (layers() - 1)) * layer_pitch_; }
+  [[nodiscard]] double layer_shift(int layer) const {
+    return is_stacked() ? 0.0 : (layer - 0.5 * (layers() - 1)) * layer_pitch_;
+  }
   Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft) const;
 
   const Fabric& fabric_;

@@ -14,12 +14,14 @@ namespace selvage::fabric {
 
 System scaled(System system, double by) {
   system.thickest = system.widest = 0.0;
-  for (WovenThread& woven : system.threads) {
+  const auto scale = [&](WovenThread& woven) {
     woven.section = yarn::with_lengths(woven.section, [&](double length) { return by * length; });
     woven.size = yarn::nominal_size(woven.section);
     system.thickest = std::max(system.thickest, woven.size.height);
     system.widest = std::max(system.widest, woven.size.width);
-  }
+  };
+  std::ranges::for_each(system.threads, scale);
+  for (std::vector<WovenThread>& column : system.columns) std::ranges::for_each(column, scale);
   return system;
 }
 

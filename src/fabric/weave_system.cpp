@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
+#include <utility>
 
 #include "core/wrapped.h"
 #include "fabric/clearance.h"
@@ -16,11 +18,22 @@
 namespace selvage::fabric {
 
 long long System::repeat_of_threads() const {
-  return smallest_shift(static_cast<long long>(threads.size()),
-                        [&](long long i, long long k) { return thread(i).thread == thread(k).thread; });
+  if (columns.empty())
+    return smallest_shift(static_cast<long long>(threads.size()),
+                          [&](long long i, long long k) { return thread(i).thread == thread(k).thread; });
+  const auto count = static_cast<long long>(columns.size());
+  return smallest_shift(count, [&](long long i, long long k) {
+    return std::ranges::equal(
+        columns[static_cast<std::size_t>(wrapped(i, count))],
+        columns[static_cast<std::size_t>(wrapped(k, count))],
+        [](const WovenThread& a, const WovenThread& b) { return a.thread == b.thread; });
+  });
 }
 
-const WovenThread& System::thread(long long yarn) const {
+const WovenThread& System::thread(long long yarn, int layer) const {
+  if (!columns.empty())
+    return columns[static_cast<std::size_t>(wrapped(yarn, static_cast<long long>(columns.size())))]
+                  [static_cast<std::size_t>(layer)];
   return threads[static_cast<std::size_t>(wrapped(yarn, static_cast<long long>(threads.size())))];
 }
 
@@ -102,6 +115,31 @@ Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {
   if (Status fits = check_proportion("a pitch", text.pitch, system.widest, fabric.units, text.place); !fits)
     return fits.error();
   return system;
+}
+
+Status stack_columns(System& system, const Fabric& fabric, const std::vector<WarpColumn>& columns) {
+  const std::size_t count = std::lcm(columns.size(), system.threads.size());
+  std::vector<std::vector<WovenThread>> stacked;
+  for (std::size_t c = 0; c < count; ++c) {
+    std::vector<WovenThread>& column = stacked.emplace_back();
+    for (const StackedWarp& warp : columns[c % columns.size()]) {
+      column.push_back(system.thread(static_cast<long long>(c)));
+      if (warp.thread.empty()) continue;
+      Result<WovenThread> woven = woven_thread(fabric, warp.thread, warp.place);
+      if (!woven) return woven.error();
+      column.back() = std::move(*woven);
+    }
+  }
+  system.columns = std::move(stacked);
+  system.threads.clear();
+  system.thickest = system.widest = 0.0;
+  for (const std::vector<WovenThread>& column : system.columns)
+    for (const WovenThread& woven : column) {
+      system.thickest = std::max(system.thickest, woven.size.height);
+      system.widest = std::max(system.widest, woven.size.width);
+      system.threads.push_back(woven);
+    }
+  return check_proportion("a pitch", system.text->pitch, system.widest, fabric.units, system.text->place);
 }
 
 WovenThread filled(WovenThread woven) {

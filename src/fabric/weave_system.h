@@ -17,7 +17,9 @@ struct WovenThread {
 
 struct System {
   const WeaveSystem* text = nullptr;
-  std::vector<WovenThread> threads;  // used in turn, as the text lists them
+  std::vector<WovenThread> threads;  // used in turn, as the text lists them; and all that columns have
+  // Of warps above each other: those of each column, from the lowest; used in turn. Empty: one of `threads`.
+  std::vector<std::vector<WovenThread>> columns;
   double thickest = 0, widest = 0;
 
   // Where spacing is not even: by how much the yarns of a repeat lie off their even places.
@@ -25,8 +27,8 @@ struct System {
   // Least distances of neighbours: of those between which the other system changes sides, and of all.
   double room = 0, closest = 0;
 
-  // Yarns are numbered from 0 and go on in both directions.
-  [[nodiscard]] const WovenThread& thread(long long yarn) const;
+  // Yarns (columns) are numbered from 0 and go on in both directions. `layer`: of those above each other.
+  [[nodiscard]] const WovenThread& thread(long long yarn, int layer = 0) const;
   // Yarns after which the threads come again.
   [[nodiscard]] long long repeat_of_threads() const;
   // Where a yarn lies, one rounding: (yarn + 1/2) pitch; where spacing is not even, beside it. Between yarns
@@ -37,6 +39,9 @@ struct System {
 // Errors (geometry): a thread without a size, at the system's line.
 Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place);
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
+
+// Puts warps above each other. Errors as of system_of.
+Status stack_columns(System& system, const Fabric& fabric, const std::vector<WarpColumn>& columns);
 
 // With the room that it takes beside straight yarns: that of the circle round a Loop7, which is not quite
 // round.

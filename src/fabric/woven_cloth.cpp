@@ -80,15 +80,23 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
   if (product_of(repeat_of(*text.warp, text.drawdown->repeat_of_ends()),
                  repeat_of(*text.weft, text.drawdown->repeat_of_picks())) > most_repeat_crossings)
     return error(Kind::limit, fmt::format("its repeat has more than {} crossings", most_repeat_crossings));
+  const Drawdown& drawdown = *text.drawdown;
+  const auto column_of = [&](int column) { return wrapped(column, drawdown.columns()); };
+  const auto warps_in = [&](int column) {
+    return drawdown.first_end(column_of(column) + 1) - drawdown.first_end(column_of(column));
+  };
   const auto add = [&](const System& system, long long repeat, bool is_warp,
                        std::vector<mechanics::WovenYarn>& yarns, std::vector<double>& gaps) -> Status {
     const auto count = static_cast<int>(std::lcm(repeat, system.repeat_of_threads()));
     for (int k = 0; k < count; ++k) {
-      Result<mechanics::WovenYarn> yarn =
-          woven_yarn(system.thread(k), text.fabric->units, is_warp, cloth.constants);
-      if (!yarn) return yarn.error();
-      yarn->fibre_area *= text.yarns * text.yarns;
-      yarns.push_back(*yarn);
+      const int layers = is_warp ? warps_in(k) : drawdown.layers;
+      for (int layer = 0; layer < layers; ++layer) {
+        Result<mechanics::WovenYarn> yarn =
+            woven_yarn(system.thread(k, layer), text.fabric->units, is_warp, cloth.constants);
+        if (!yarn) return yarn.error();
+        yarn->fibre_area *= text.yarns * text.yarns;
+        yarns.push_back(*yarn);
+      }
     }
     gaps = gaps_of(system, count);
     return {};
@@ -99,9 +107,17 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
   if (Status added = add(*text.weft, text.drawdown->repeat_of_picks(), false, cloth.wefts, cloth.weft_gaps);
       !added)
     return added.error();
+  cloth.wefts_a_row = drawdown.layers;
+  if (!drawdown.first_ends.empty()) {
+    cloth.first_warps = {0};
+    for (int column = 0; column < cloth.columns(); ++column)
+      cloth.first_warps.push_back(cloth.first_warps.back() + warps_in(column));
+  }
   for (int pick = 0; pick < cloth.picks(); ++pick)
-    for (int end = 0; end < cloth.ends(); ++end)
-      cloth.warp_on_top.push_back(text.drawdown->warp_on_top(pick, end) ? 1 : 0);
+    for (int column = 0; column < cloth.columns(); ++column)
+      for (int layer = 0; layer < warps_in(column); ++layer)
+        cloth.warp_on_top.push_back(
+            drawdown.warp_on_top(pick, drawdown.first_end(column_of(column)) + layer) ? 1 : 0);
   switch (state_of(*text.weave)) {
     case Weave::State::loom:
       cloth.weft_tension = cloth.constants.loom_tension;
@@ -137,14 +153,12 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
   bottom_ = std::numeric_limits<double>::infinity();
   top_ = -bottom_;
   for (const bool is_weft : {false, true}) {
-    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(),
-              crossings = is_weft ? cloth_.ends() : cloth_.picks();
-    for (int yarn = 0; yarn < yarns; ++yarn) {
-      const nurbs::Curve line =
-          unclamped(is_weft, yarn, 0, static_cast<long long>(crossings) * mechanics::spans_a_gap);
-      for (int k = 0; k < crossings * mechanics::spans_a_gap; ++k) {
-        const auto size =
-            equilibrium_.size(system_of(is_weft), yarn, static_cast<double>(k) / mechanics::spans_a_gap);
+    const int knots = crossings(is_weft) * mechanics::spans_a_gap;
+    for (const ClothYarn& yarn : yarns(is_weft)) {
+      const nurbs::Curve line = unclamped(yarn, 0, knots);
+      for (int k = 0; k < knots; ++k) {
+        const auto size = equilibrium_.size(system_of(is_weft), number(yarn),
+                                            static_cast<double>(k) / mechanics::spans_a_gap);
         const double z = nurbs::evaluate(line, knot(is_weft, k)).z();
         top_ = std::max(top_, z + 0.5 * size.height);
         bottom_ = std::min(bottom_, z - 0.5 * size.height);
@@ -159,33 +173,47 @@ double ClothInEquilibrium::knot(bool is_weft, long long index) const {
   return (is_weft ? warp_ : weft_).at(static_cast<double>(index) / mechanics::spans_a_gap);
 }
 
-double ClothInEquilibrium::control_height(bool is_weft, long long yarn, long long index) const {
-  const long long yarns = is_weft ? cloth_.picks() : cloth_.ends(),
-                  knots = mechanics::spans_a_gap *
-                          static_cast<long long>(is_weft ? cloth_.ends() : cloth_.picks());
-  return equilibrium_.control_height(system_of(is_weft), static_cast<int>(wrapped(yarn, yarns)),
+int ClothInEquilibrium::number(const ClothYarn& yarn) const {
+  const auto place = static_cast<int>(
+      wrapped(yarn.place, static_cast<long long>(yarn.is_weft ? cloth_.rows() : cloth_.columns())));
+  return (yarn.is_weft ? place * cloth_.wefts_a_row : cloth_.first_warp(place)) + yarn.layer;
+}
+
+std::vector<ClothYarn> ClothInEquilibrium::yarns(bool is_weft) const {
+  std::vector<ClothYarn> made;
+  for (int place = 0; place < crossings(!is_weft); ++place) {
+    const int layers = is_weft ? cloth_.wefts_a_row : cloth_.first_warp(place + 1) - cloth_.first_warp(place);
+    for (int layer = 0; layer < layers; ++layer) made.push_back({is_weft, place, layer});
+  }
+  return made;
+}
+
+double ClothInEquilibrium::control_height(const ClothYarn& yarn, long long index) const {
+  const auto knots = static_cast<long long>(mechanics::spans_a_gap) * crossings(yarn.is_weft);
+  return equilibrium_.control_height(system_of(yarn.is_weft), number(yarn),
                                      static_cast<int>(wrapped(index, knots)));
 }
 
 // Over knots first .. last and two more at either side.
-nurbs::Curve ClothInEquilibrium::unclamped(bool is_weft, long long yarn, long long first,
-                                           long long last) const {
+nurbs::Curve ClothInEquilibrium::unclamped(const ClothYarn& yarn, long long first, long long last) const {
+  const bool is_weft = yarn.is_weft;
   nurbs::Curve line;
   for (long long k = first - 3; k <= last + 3; ++k) line.knots.push_back(knot(is_weft, k));
   for (long long k = first - 1; k <= last + 1; ++k)
     line.points.emplace_back((knot(is_weft, k - 1) + knot(is_weft, k) + knot(is_weft, k + 1)) / 3.0, 0.0,
-                             control_height(is_weft, yarn, k));
+                             control_height(yarn, k));
   return line;
 }
 
-double ClothInEquilibrium::height(bool is_weft, long long yarn, long long crossing) const {
+double ClothInEquilibrium::height(const ClothYarn& yarn, long long crossing) const {
   const long long at = crossing * mechanics::spans_a_gap;
-  return nurbs::evaluate(unclamped(is_weft, yarn, at - 1, at + 1), knot(is_weft, at)).z() -
+  return nurbs::evaluate(unclamped(yarn, at - 1, at + 1), knot(yarn.is_weft, at)).z() -
          0.5 * (top_ + bottom_);
 }
 
-void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
+void ClothInEquilibrium::shape(YarnPlan& plan, const ClothYarn& yarn, double from, double to,
                                Vec3 (*to_place)(double s, double z, double across)) const {
+  const bool is_weft = yarn.is_weft;
   constexpr int stations = 8;  // of sizes, from crossing to crossing
   const System& crossed = is_weft ? warp_ : weft_;
   const auto crossing_near = [&](double s) {
@@ -193,7 +221,7 @@ void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, dou
   };
   const long long first = crossing_near(from) - 2, last = crossing_near(to) + 2;
   nurbs::Curve line = nurbs::restricted(
-      unclamped(is_weft, yarn, first * mechanics::spans_a_gap, last * mechanics::spans_a_gap), from, to);
+      unclamped(yarn, first * mechanics::spans_a_gap, last * mechanics::spans_a_gap), from, to);
   const double middle = 0.5 * (top_ + bottom_);
   for (Vec3& point : line.points) point = to_place(point.x(), point.z() - middle, 0.0);
   const auto parameter = [&](double s) { return std::clamp((s - from) / (to - from), 0.0, 1.0); };
@@ -203,31 +231,28 @@ void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, dou
   plan.line.parameters.clear();
   plan.points.clear();
   plan.spec.sizes.clear();
-  const auto yarns = static_cast<long long>(is_weft ? cloth_.picks() : cloth_.ends());
-  const auto own = static_cast<int>(wrapped(yarn, yarns));
   for (long long k = first * stations; k <= last * stations; ++k) {
     const double crossings = static_cast<double>(k) / stations, s = crossed.at(crossings);
     if (s < from || s > to) continue;
-    const auto size = equilibrium_.size(system_of(is_weft), own, crossings);
+    const auto size = equilibrium_.size(system_of(is_weft), number(yarn), crossings);
     plan.spec.sizes.push_back({parameter(s), {size.width, size.height}, 0.0});
     if (k % stations != 0) continue;
-    plan.points.push_back(to_place(s, height(is_weft, yarn, k / stations), 0.0));
+    plan.points.push_back(to_place(s, height(yarn, k / stations), 0.0));
     plan.line.parameters.push_back(parameter(s));
   }
   const yarn::SectionSize size = plan.spec.sizes.front().size;
   plan.spec.section = plan.thread.section.emplace(yarn::Ellipse{size.width, size.height});
-  plan.thread.packing = packing(is_weft, yarn);
+  plan.thread.packing = packing(yarn);
 }
 
-double ClothInEquilibrium::packing(bool is_weft, long long yarn) const {
-  const auto& yarns = is_weft ? cloth_.wefts : cloth_.warps;
-  const auto own = static_cast<std::size_t>(wrapped(yarn, static_cast<long long>(yarns.size())));
-  const int halves = 2 * (is_weft ? cloth_.ends() : cloth_.picks());
+double ClothInEquilibrium::packing(const ClothYarn& yarn) const {
+  const auto own = static_cast<std::size_t>(number(yarn));
+  const int halves = 2 * crossings(yarn.is_weft);
   double sum = 0.0;
   for (int half = 0; half < halves; ++half) {
-    const auto size = equilibrium_.size(system_of(is_weft), static_cast<int>(own), 0.5 * half);
-    sum +=
-        yarns[own].fibre_area / yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
+    const auto size = equilibrium_.size(system_of(yarn.is_weft), static_cast<int>(own), 0.5 * half);
+    sum += (yarn.is_weft ? cloth_.wefts : cloth_.warps)[own].fibre_area /
+           yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
   }
   return sum / halves;
 }
@@ -238,22 +263,21 @@ EquilibriumReport ClothInEquilibrium::report() const {
                : state_ == Weave::State::relaxed ? "relaxed"
                                                  : "finished";
   for (const bool is_weft : {false, true}) {
-    const int yarns = is_weft ? cloth_.picks() : cloth_.ends(),
-              crossings = is_weft ? cloth_.ends() : cloth_.picks();
+    const std::vector<ClothYarn> all = yarns(is_weft);
     EquilibriumReport::System system;
     system.name = is_weft ? "weft" : "warp";
-    const double weight = 1.0 / (static_cast<double>(yarns) * crossings);
-    for (int yarn = 0; yarn < yarns; ++yarn) {
-      for (int crossing = 0; crossing < crossings; ++crossing) {
-        const auto here = equilibrium_.size(system_of(is_weft), yarn, crossing),
-                   between = equilibrium_.size(system_of(is_weft), yarn, crossing + 0.5);
+    const double weight = 1.0 / (static_cast<double>(all.size()) * crossings(is_weft));
+    for (const ClothYarn& yarn : all) {
+      for (int crossing = 0; crossing < crossings(is_weft); ++crossing) {
+        const auto here = equilibrium_.size(system_of(is_weft), number(yarn), crossing),
+                   between = equilibrium_.size(system_of(is_weft), number(yarn), crossing + 0.5);
         system.width += weight * millimetres_ * here.width;
         system.height += weight * millimetres_ * here.height;
         system.width_between += weight * millimetres_ * between.width;
-        system.axis_height += weight * millimetres_ * std::abs(height(is_weft, yarn, crossing));
+        system.axis_height += weight * millimetres_ * std::abs(height(yarn, crossing));
         system.height_between += weight * millimetres_ * between.height;
       }
-      system.packing += packing(is_weft, yarn) / yarns;
+      system.packing += packing(yarn) / static_cast<double>(all.size());
     }
     system.crimp = equilibrium_.crimp(system_of(is_weft));
     made.systems.push_back(system);

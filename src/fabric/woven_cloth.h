@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/diagnostics.h"
 #include "fabric/draft.h"
@@ -25,30 +26,41 @@ struct ClothText {
 // Errors: of twist_factor_of, at the thread (geometry); a repeat of too many crossings (limit).
 Result<mechanics::WovenCloth> woven_cloth(const ClothText& text);
 
+// Of a column or a row, both numbered from 0 and in both directions without end; of those above each other
+// there the how-manieth from below, from 0.
+struct ClothYarn {
+  bool is_weft = false;
+  long long place = 0;
+  int layer = 0;
+};
+
 class ClothInEquilibrium {
  public:
   // Errors: of woven_cloth; of find_equilibrium, at the weave.
   static Result<ClothInEquilibrium> find(const ClothText& text);
 
   // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with
-  // its section and its sizes. Yarns are numbered from 0, in both directions without end.
-  void shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
+  // its section and its sizes.
+  void shape(YarnPlan& plan, const ClothYarn& yarn, double from, double to,
              Vec3 (*to_place)(double s, double z, double across)) const;
   // Height of a yarn's axis at a crossing.
-  [[nodiscard]] double height(bool is_weft, long long yarn, long long crossing) const;
+  [[nodiscard]] double height(const ClothYarn& yarn, long long crossing) const;
   [[nodiscard]] double thickness() const { return top_ - bottom_; }
   [[nodiscard]] double max_width(bool is_weft) const { return max_width_[is_weft ? 1 : 0]; }
   [[nodiscard]] double max_height(bool is_weft) const { return max_height_[is_weft ? 1 : 0]; }
   [[nodiscard]] EquilibriumReport report() const;
   // Fibre area over the area of the section, mean along a yarn.
-  [[nodiscard]] double packing(bool is_weft, long long yarn) const;
+  [[nodiscard]] double packing(const ClothYarn& yarn) const;
 
  private:
   ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth,
                      mechanics::WovenEquilibrium equilibrium);
   [[nodiscard]] double knot(bool is_weft, long long index) const;  // of the centre lines' spans
-  [[nodiscard]] double control_height(bool is_weft, long long yarn, long long index) const;
-  [[nodiscard]] nurbs::Curve unclamped(bool is_weft, long long yarn, long long first, long long last) const;
+  [[nodiscard]] double control_height(const ClothYarn& yarn, long long index) const;
+  [[nodiscard]] nurbs::Curve unclamped(const ClothYarn& yarn, long long first, long long last) const;
+  [[nodiscard]] int number(const ClothYarn& yarn) const;  // in cloth_
+  [[nodiscard]] std::vector<ClothYarn> yarns(bool is_weft) const;
+  [[nodiscard]] int crossings(bool is_weft) const { return is_weft ? cloth_.columns() : cloth_.rows(); }
 
   System warp_, weft_;
   Weave::State state_;

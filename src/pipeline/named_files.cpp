@@ -28,14 +28,17 @@ using fabric::Weave;
 
 Result<Draft> only_draft(const fabric::Fabric& fabric) {
   const Draft* draft = nullptr;
+  bool has_levels = false;
   std::size_t weaves = 0;
   for (const fabric::Item& item : fabric.items) {
     const auto* const weave = std::get_if<Weave>(&item);
     if (weave == nullptr) continue;
     draft = &weave->draft;
+    has_levels = !weave->columns.empty();
     ++weaves;
   }
   if (weaves != 1) return error(Kind::malformed, fmt::format("it has {} weaves, not one", weaves));
+  if (has_levels) return error(Kind::malformed, "its weave has levels, and no draft");
   if (draft->form == Draft::Form::file)
     return error(Kind::unsupported,
                  fmt::format("its draft stands in a file, too: {}", in_quotes(draft->file)));
