@@ -109,6 +109,20 @@ bool Drawdown::warp_on_top(long long pick, long long end) const {
                                        wrapped<long long>(end, ends))];
 }
 
+long long Drawdown::ends_before(long long column) const {
+  if (first_ends.empty()) return column;
+  const int in_repeat = static_cast<int>(wrapped<long long>(column, columns()));
+  return (column - in_repeat) / columns() * ends + first_end(in_repeat);
+}
+
+std::pair<long long, int> Drawdown::column_of(long long end) const {
+  if (first_ends.empty()) return {end, 0};
+  const int in_repeat = static_cast<int>(wrapped<long long>(end, ends));
+  const auto after = std::upper_bound(first_ends.begin(), first_ends.end(), in_repeat);
+  const auto column = static_cast<int>(after - first_ends.begin()) - 1;
+  return {(end - in_repeat) / ends * columns() + column, in_repeat - first_end(column)};
+}
+
 long long Drawdown::repeat_of_picks() const {
   return smallest_shift(rows(), [&](long long i, long long k) {
     for (long long layer = 0; layer < layers; ++layer)
@@ -134,9 +148,8 @@ namespace {
 
 std::string name_of_end(const Drawdown& drawdown, int end) {
   if (drawdown.first_ends.empty()) return fmt::format("warp {}", end + 1);
-  int column = 0;
-  while (drawdown.first_end(column + 1) <= end) ++column;
-  return fmt::format("warp_{}_{}", column + 1, end - drawdown.first_end(column) + 1);
+  const auto [column, layer] = drawdown.column_of(end);
+  return fmt::format("warp_{}_{}", column + 1, layer + 1);
 }
 
 std::string name_of_pick(const Drawdown& drawdown, int pick) {

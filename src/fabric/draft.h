@@ -37,6 +37,9 @@ struct Drawdown {
   }
   // Any whole numbers, from 0 (pick 0 is weft 1): the draft repeats both ways.
   [[nodiscard]] bool warp_on_top(long long pick, long long end) const;
+  // Numbers of warps go on in both directions, too: that of a column's first one, and {column, from below}.
+  [[nodiscard]] long long ends_before(long long column) const;
+  [[nodiscard]] std::pair<long long, int> column_of(long long end) const;
   // The smallest repeat, which may be a part of it: so many rows, so many columns.
   [[nodiscard]] long long repeat_of_picks() const;
   [[nodiscard]] long long repeat_of_ends() const;

@@ -104,7 +104,8 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
   const int axis = is_weft ? 0 : 1;
   const Box3 box = cell.shape().bounds();
   const auto [begin, end] = numbers_of(row, cell.periodic[is_weft ? 0 : 1], box.min()[axis], box.max()[axis]);
-  const auto count = static_cast<std::size_t>(end - begin);
+  const auto count = static_cast<std::size_t>(
+      kind == Block::Kind::warp ? drawdown_.ends_before(end) - drawdown_.ends_before(begin) : end - begin);
   Block block{kind, layer, set, 0, count, begin, static_cast<std::size_t>(row.count)};
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;
   blocks_.push_back(block);
@@ -187,27 +188,11 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   if (!made && is_jammed_ && warp_.text->is_drawn) made = fit_drawing(own);
   if (!made) return is_jammed_ ? jammed(made.error()) : made;
   for (const Message& message : own.messages()) diagnostics.add(message);
-  if (is_stacked()) add_stacked_blocks();
   for (int layer = 0; layer < layers(); ++layer) {
-    if (!is_stacked()) add_block(Block::Kind::warp, layer, 0, row_of(warp_));
+    if (layer == 0 || !is_stacked()) add_block(Block::Kind::warp, layer, 0, row_of(warp_));
     add_block(Block::Kind::weft, layer, 0, row_of(weft_));
   }
   return {};
-}
-
-// One for each warp of the columns that the text says.
-void WeaveConstruction::add_stacked_blocks() {
-  const auto step = static_cast<long long>(weave_.columns.size());
-  for (long long column = 0; column < step; ++column)
-    for (std::size_t layer = 0; layer < weave_.columns[static_cast<std::size_t>(column)].size(); ++layer) {
-      Row row = row_of(warp_);
-      row.count = (row.count - column + step - 1) / step;
-      row.first += static_cast<double>(column) * row.step;
-      row.step *= static_cast<double>(step);
-      add_block(Block::Kind::warp, static_cast<int>(layer), 0, row);
-      blocks_.back().columns = step;
-      blocks_.back().first_column = column;
-    }
 }
 
 // A drawing's threads are as thick as looks well: where they jam, the thickest that have room are built.
@@ -454,8 +439,11 @@ WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
   const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), index,
                                       [](std::size_t i, const Block& block) { return i < block.first; });
   const Block& block = *std::prev(after);
-  const long long number = block.begin + static_cast<long long>(index - block.first);
-  return {&block, block.first_column + number * block.columns};
+  const auto number = static_cast<long long>(index - block.first);
+  if (!is_stacked() || block.kind != Block::Kind::warp)
+    return {&block, block.begin + number, is_stacked() ? block.layer : 0};
+  const auto [column, layer] = drawdown_.column_of(drawdown_.ends_before(block.begin) + number);
+  return {&block, column, layer};
 }
 
 std::string WeaveConstruction::system(std::size_t index) const {
@@ -465,7 +453,7 @@ std::string WeaveConstruction::system(std::size_t index) const {
 }
 
 std::string WeaveConstruction::name(std::size_t index) const {
-  const auto [block, yarn] = place_of(index);
+  const auto [block, yarn, stacked] = place_of(index);
   if (block->kind == Block::Kind::binder) {
     // Line by line, and then those beyond the cloth's edges.
     const auto in_cloth = static_cast<long long>(block->in_cloth);
@@ -483,7 +471,7 @@ std::string WeaveConstruction::name(std::size_t index) const {
     return fmt::format("binder_{}", number);
   }
   if (is_stacked() && block->kind == Block::Kind::warp)
-    return fmt::format("warp_{}_{}", yarn + 1, block->layer + 1);
+    return fmt::format("warp_{}_{}", yarn + 1, stacked + 1);
   const std::string_view kind = block->kind == Block::Kind::warp ? "warp" : "weft";
   const std::string layer =
       layers() > 1 || is_straight() ? fmt::format("layer{}_", block->layer + 1) : std::string();
@@ -491,9 +479,9 @@ std::string WeaveConstruction::name(std::size_t index) const {
 }
 
 const Thread& WeaveConstruction::thread(std::size_t index) const {
-  const auto [block, yarn] = place_of(index);
+  const auto [block, yarn, layer] = place_of(index);
   if (block->kind == Block::Kind::binder) return *binders_[block->set].thread;
-  return *(block->kind == Block::Kind::warp ? warp_ : weft_).thread(yarn, block->layer).thread;
+  return *(block->kind == Block::Kind::warp ? warp_ : weft_).thread(yarn, layer).thread;
 }
 
 double WeaveConstruction::straight_z(bool is_weft, int layer) const {
@@ -501,7 +489,8 @@ double WeaveConstruction::straight_z(bool is_weft, int layer) const {
 }
 
 std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
-  const auto& [block, yarn] = place;
+  const Block* const block = place.block;
+  const long long yarn = place.yarn;
   const bool is_weft = block->kind == Block::Kind::weft;
   const Reach& reach = is_weft ? along_y_ : along_x_;
   std::vector<Pass> passes;
@@ -561,7 +550,7 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
 
 Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
   const Place place = place_of(index);
-  const auto& [block, yarn] = place;
+  const auto& [block, yarn, stacked] = place;
   const bool is_weft = block->kind == Block::Kind::weft, is_binder = block->kind == Block::Kind::binder;
   const Role role = is_binder ? Role::binder : is_weft ? Role::weft : Role::warp;
   const TextPlace text = is_binder ? weave_.binders[block->set].place : weave_.place;
@@ -592,8 +581,7 @@ Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
   }
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
   if (equilibrium_) {
-    equilibrium_->shape(*plan, {is_weft, yarn, is_stacked() ? block->layer : 0}, reach.from, reach.to,
-                        to_place);
+    equilibrium_->shape(*plan, {is_weft, yarn, stacked}, reach.from, reach.to, to_place);
     return plan;
   }
   const std::vector<Pass> passes = passes_of(place);

@@ -33,10 +33,8 @@ struct Block {
   int layer = 0;        // from 0; of wefts between straight warps one more than of these
   std::size_t set = 0;  // binder: which line
   std::size_t first = 0, count = 0;
-  long long begin = 0;       // the number of its first yarn: below 0 before the cloth's edge
+  long long begin = 0;       // the number of its first yarn (column): below 0 before the cloth's edge
   std::size_t in_cloth = 0;  // of them, those that the text counts: 0, 1, ...
-  // Of warps in columns: the columns from one to the next, and the first one's.
-  long long columns = 1, first_column = 0;
 };
 
 // Yarns side by side: how many the text counts, where they lie, and how wide they are.
@@ -78,7 +76,8 @@ class WeaveConstruction final : public Construction {
  private:
   struct Place {
     const Block* block;
-    long long yarn;  // its number: from 0 in the cloth; of warps in columns the column's
+    long long yarn;  // its number, of warps above each other their column's: from 0 in the cloth
+    int layer = 0;   // of those above each other
   };
   [[nodiscard]] Place place_of(std::size_t index) const;
   // Data points of a weft, or of a yarn along the warp.
@@ -95,7 +94,6 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
   // Warps and wefts lie above each other in one cloth; else layers are cloths, or of straight yarns.
   [[nodiscard]] bool is_stacked() const { return !weave_.columns.empty(); }
-  void add_stacked_blocks();
   void add_block(Block::Kind kind, int layer, std::size_t set, const Row& row);
   [[nodiscard]] static Row row_of(const System& system) {
     // Yarns off their even places reach further.
