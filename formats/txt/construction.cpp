@@ -368,6 +368,8 @@ void read_levels(Parser& p, WeaveBlock& weave, std::string_view) {
   if (!weave.levels_place) weave.levels_place = p.statement();
   fabric::WarpColumn column;
   do {
+    if (!p.more())
+      return p.error(p.here(), "a warp has a level for each weft of the repeat, as in 'levels 1 0 , 2 1'");
     fabric::StackedWarp warp;
     weave.stacked_warps.push_back(p.here());
     warp.place = p.here().place();

@@ -406,24 +406,29 @@ void WovenProblem::add_stack(Strand strand, Crossing at) {
     stacks_.push_back({station(lower, at, place), station(strand, at, place), 0, cloth_.clearance});
 }
 
-std::size_t WovenProblem::add_run(Strand strand, Crossing at, int direction, double sign) {
+std::size_t WovenProblem::add_run(Strand strand, Crossing at, int direction, int places, double sign) {
   Run run;
   run.sign = sign * direction;
-  for (int k = 0; k <= places_a_half_gap; ++k)
-    run.stations[static_cast<std::size_t>(k)] = station(strand, at, direction * k);
-  runs_.push_back(run);
+  for (int k = 0; k <= places; ++k) run.stations.push_back(station(strand, at, direction * k));
+  runs_.push_back(std::move(run));
   return runs_.size() - 1;
 }
 
 void WovenProblem::add_contacts(Crossing at, int warp_layer, int weft_layer) {
   const double side = warp_on_top(at, warp_layer, weft_layer) ? 1.0 : -1.0;
   const Strand warp{WovenSystem::warp, warp_layer}, weft{WovenSystem::weft, weft_layer};
-  constexpr int every = places_a_half_gap / corner_places;
+  constexpr int half_gap = places_a_gap / 2, every = half_gap / corner_places;
+  // Neighbours above and below each other may be wider than their pitch.
+  const bool is_stacked = count(WovenSystem::warp, at) + count(WovenSystem::weft, at) > 2;
+  const int places = is_stacked ? places_a_gap : half_gap,
+            corners = is_stacked ? corner_places * 3 / 2 : corner_places;
   // Both yarns fall away from the crossing: the upper one down, the lower one up.
-  const std::array<std::size_t, 2> warp_runs = {add_run(warp, at, -1, -side), add_run(warp, at, 1, -side)},
-                                   weft_runs = {add_run(weft, at, -1, side), add_run(weft, at, 1, side)};
+  const std::array<std::size_t, 2> warp_runs = {add_run(warp, at, -1, places, -side),
+                                                add_run(warp, at, 1, places, -side)},
+                                   weft_runs = {add_run(weft, at, -1, places, side),
+                                                add_run(weft, at, 1, places, side)};
   const auto distance = [&](WovenSystem system, std::size_t d, int place) {
-    return 0.5 * place / places_a_half_gap * (d == 0 ? -gap(system, at, -1) : gap(system, at, 0));
+    return 0.5 * place / half_gap * (d == 0 ? -gap(system, at, -1) : gap(system, at, 0));
   };
   const auto add = [&](std::size_t warp_side, int warp_place, std::size_t weft_side, int weft_place) {
     contacts_.push_back({runs_[warp_runs[warp_side]].stations[static_cast<std::size_t>(warp_place)],
@@ -434,14 +439,14 @@ void WovenProblem::add_contacts(Crossing at, int warp_layer, int weft_layer) {
   };
   add(0, 0, 0, 0);
   for (std::size_t d = 0; d < 2; ++d)
-    for (int k = 1; k <= places_a_half_gap; ++k) {
+    for (int k = 1; k <= places; ++k) {
       add(d, k, 0, 0);
       add(0, 0, d, k);
     }
   for (std::size_t d = 0; d < 2; ++d)
     for (std::size_t e = 0; e < 2; ++e)
-      for (int k = 1; k <= corner_places; ++k)
-        for (int m = 1; m <= corner_places; ++m) add(d, every * k, e, every * m);
+      for (int k = 1; k <= corners; ++k)
+        for (int m = 1; m <= corners; ++m) add(d, every * k, e, every * m);
 }
 
 double WovenProblem::rest_half_height(Strand strand, Crossing at) const {

@@ -163,10 +163,9 @@ class WovenProblem final : public BarrierProblem {
     std::size_t warp_run = 0, weft_run = 0;  // places of its stations in runs_
     int warp_place = 0, weft_place = 0;
   };
-  static constexpr int places_a_half_gap = spans_a_gap;
-  // Stations of a half gap; slopes count away from the crossing, positive towards the other side.
+  // Stations from a crossing on; slopes count away from it, positive towards the other side.
   struct Run {
-    std::array<std::size_t, places_a_half_gap + 1> stations{};
+    std::vector<std::size_t> stations;
     double sign = 1;
   };
   struct Crossing {
@@ -205,7 +204,7 @@ class WovenProblem final : public BarrierProblem {
   void add_terms(Crossing at, double share);
   void add_yarn(Strand strand, Crossing at, double share);
   void add_contacts(Crossing at, int warp_layer, int weft_layer);
-  std::size_t add_run(Strand strand, Crossing at, int direction, double sign);
+  std::size_t add_run(Strand strand, Crossing at, int direction, int places, double sign);
   void add_beside(Strand strand, Crossing at);
   void add_stack(Strand strand, Crossing at);
   [[nodiscard]] double rest_half_height(Strand strand, Crossing at) const;

@@ -382,8 +382,19 @@ void WovenProblem::differentiate(const VectorXd& x, const VectorXd& multipliers,
 
 // The place where the yarn leaves the crossing most steeply: beyond it a tangent leaves the yarn.
 int WovenProblem::reach_of(const Run& run, const std::vector<Values>& values) const {
-  constexpr double slack = 1e-3;
+  constexpr double slack = 1e-3, turn = 0.05;
   double most = -std::numeric_limits<double>::infinity();
+  if (run.stations.size() > 1 + spans_a_gap) {
+    // Up to the next crossing: behind the first turn the yarn may come back.
+    int reach = 0;
+    for (std::size_t k = 0; k < run.stations.size(); ++k) {
+      const double here = run.sign * values[run.stations[k]][slope];
+      if (here < most - turn) break;
+      if (here >= most - slack) reach = static_cast<int>(k);
+      most = std::max(most, here);
+    }
+    return reach;
+  }
   for (const std::size_t at : run.stations) most = std::max(most, run.sign * values[at][slope]);
   int reach = 0;
   for (std::size_t k = 0; k < run.stations.size(); ++k)
