@@ -394,7 +394,8 @@ void WovenProblem::add_beside(Strand strand, Crossing at) {
       const bool is_level =
           2 * place < places ? is_level_here : change_sides || (is_level_here && is_level_next);
       besides_.push_back({station(strand, at, every * place), station(beside, next, every * place), 0,
-                          gap(across, at, 0), cloth_.clearance, is_level && place % half == 0});
+                          gap(across, at, 0), cloth_.clearance, is_level && place % half == 0,
+                          is_stacked(at)});
     }
   }
 }
@@ -419,9 +420,8 @@ void WovenProblem::add_contacts(Crossing at, int warp_layer, int weft_layer) {
   const Strand warp{WovenSystem::warp, warp_layer}, weft{WovenSystem::weft, weft_layer};
   constexpr int half_gap = places_a_gap / 2, every = half_gap / corner_places;
   // Neighbours above and below each other may be wider than their pitch.
-  const bool is_stacked = count(WovenSystem::warp, at) + count(WovenSystem::weft, at) > 2;
-  const int places = is_stacked ? places_a_gap : half_gap,
-            corners = is_stacked ? corner_places * 3 / 2 : corner_places;
+  const int places = is_stacked(at) ? places_a_gap : half_gap,
+            corners = is_stacked(at) ? corner_places * 3 / 2 : corner_places;
   // Both yarns fall away from the crossing: the upper one down, the lower one up.
   const std::array<std::size_t, 2> warp_runs = {add_run(warp, at, -1, places, -side),
                                                 add_run(warp, at, 1, places, -side)},

@@ -151,7 +151,8 @@ class WovenProblem final : public BarrierProblem {
   struct Beside {
     std::size_t first = 0, second = 0, pair = 0;  // stations, and their spans
     double spacing = 0, clearance = 0;
-    bool is_level = false;  // neither comes over the other: by their widths alone
+    bool is_level = false;    // neither comes over the other: by their widths alone
+    bool is_stacked = false;  // others lie above or below them
   };
   struct Stack {  // one directly above the other along both, over the same place
     std::size_t first = 0, second = 0, pair = 0;  // of the lower one, of the upper one
@@ -190,6 +191,9 @@ class WovenProblem final : public BarrierProblem {
                                             const Eigen::VectorXd& x) const;
   [[nodiscard]] std::vector<Strand> strands(Crossing at) const;  // warps first
   [[nodiscard]] int count(WovenSystem system, Crossing at) const;
+  [[nodiscard]] bool is_stacked(Crossing at) const {
+    return count(WovenSystem::warp, at) + count(WovenSystem::weft, at) > 2;
+  }
   [[nodiscard]] Rank rank(Strand strand, Crossing at) const;
   [[nodiscard]] std::pair<Strand, Crossing> located(WovenSystem system, int yarn) const;
   [[nodiscard]] int height(Strand strand, Crossing at, int knot) const;

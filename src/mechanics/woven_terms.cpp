@@ -95,6 +95,18 @@ T gap_of(const Place& place, const std::array<T, 8>& v) {
 template <class T, class Place>
 T beside_of(const Place& place, const std::array<T, 8>& v) {
   if (place.is_level) return (v[2] + v[6]) * -1.0 + (place.spacing - place.clearance);
+  if (place.is_stacked) {
+    // Sections that differ: planes along the normal of that ellipse touch them.
+    const T first = v[3] * sqrt(square(v[1]) + 1.0), second = v[7] * sqrt(square(v[5]) + 1.0),
+            up = v[0] - v[4];
+    const T along = place.spacing * square(reciprocal(v[2] + v[6])),
+            across = up * square(reciprocal(first + second));
+    const T far = sqrt(place.spacing * along + up * across);
+    return far - (sqrt(square(v[2] * along) + square(first * across)) +
+                  sqrt(square(v[6] * along) + square(second * across)) +
+                  place.clearance * sqrt(square(along) + square(across))) *
+                     reciprocal(far);
+  }
   const T width = v[2] + v[6] + place.clearance,
           height = v[3] * sqrt(square(v[1]) + 1.0) + v[7] * sqrt(square(v[5]) + 1.0) + place.clearance;
   return square(place.spacing * reciprocal(width)) + square((v[0] - v[4]) * reciprocal(height)) - 1.0;
