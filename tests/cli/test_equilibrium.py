@@ -30,6 +30,29 @@ def cotton(unit="mm", tex=20, warp=0.34, weft=0.4, draft="twill 2/1", state="fin
         unit=unit, tex=tex, warp=warp / size, weft=weft / size, draft=draft, state=state, statement=statement, more=more
     )
 
+LAYERS = """fabric 1
+thread tow
+  section ellipse 0.8 0.3
+  material carbon
+end
+weave
+  warp tow 2 pitch 1
+  weft tow 4 pitch 1.6
+  layers 2
+{levels}
+end
+"""
+BOUND = ["1 0 1 0 , 2 0 2 1", "0 1 0 1 , 1 2 1 2"]
+
+
+def layers(columns):
+    return LAYERS.format(levels="\n".join(f"  levels {column}" for column in columns))
+
+
+def upside_down(column):
+    warps = [[2 - int(level) for level in warp.split()] for warp in column.split(",")]
+    return " , ".join(" ".join(map(str, warp)) for warp in reversed(warps))
+
 
 class Equilibrium(Case):
     def sheet(self, text):
@@ -46,6 +69,26 @@ class Equilibrium(Case):
         path = self.folder / "cloth.txt"
         path.write_text(text)
         self.succeeds("check", path)
+
+    def test_warps_above_each_other(self):
+        self.is_sound(layers(BOUND))
+        sheet, turned = self.sheet(layers(BOUND)), self.sheet(layers(map(upside_down, BOUND)))
+        self.assertAlmostEqual(turned["thickness"] / sheet["thickness"], 1, delta=1e-6)
+        for system in ("warp", "weft"):
+            before, after = (made["systems"][system] for made in (sheet, turned))
+            self.assertAlmostEqual(after["mass"] / before["mass"], 1, delta=1e-6)
+            self.assertAlmostEqual(after["crimp"] / before["crimp"], 1, delta=1e-5)
+        # No thinner than two layers of tows of the area that they have, as wide as their pitch allows.
+        self.assertGreater(sheet["thickness"], sheet["yarn_fraction"] * 4 * 0.15)
+
+    def test_levels_that_no_cloth_has(self):
+        for columns, place in (
+            (["1 0 1 3 , 2 0 2 1"], ":10:10: error: level 3"),
+            (["1 0 1 , 2 0 2 1"], ":10:18: error: this warp has 4 levels"),
+            (["1 1 1 0 , 1 0 2 1"], ":10:20: error: at weft 2"),
+            (["1 0 1 0\n  draft plain"], ":10:3: error: 'levels' and 'draft'"),
+        ):
+            self.assertIn(place, self.failure(layers(columns)))
 
     def test_is_the_same_in_five_units(self):
         for changes in (

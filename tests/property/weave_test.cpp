@@ -96,6 +96,8 @@ class Differences {
     if (weave.profile == Profile::straight) {
       look_at_stack(layers);
       look_at_binders(layers);
+    } else if (!weave.columns.empty()) {
+      look_at_columns(layers);
     } else {
       for (int layer = 1; layer <= layers; ++layer) look_at_layer(layer, layers);
     }
@@ -152,6 +154,28 @@ class Differences {
           const WovenCrossing under = crossing_of(warp, plan(yarn(below, "weft", j))),
                               over = crossing_of(warp, plan(yarn(above, "weft", j)));
           expect(under.weft_z < under.warp_z && over.warp_z < over.weft_z, warp.name);
+        }
+    }
+  }
+
+  void look_at_columns(int layers) {
+    for (int i = 1; i <= weave_.warp.count; ++i) {
+      const fabric::WarpColumn& column = weave_.columns[static_cast<std::size_t>(i - 1) % weave_.columns.size()];
+      for (std::size_t k = 0; k < column.size(); ++k)
+        for (int j = 1; j <= weave_.weft.count; ++j) {
+          const YarnPlan& warp = plan(yarn("", "warp", i) + "_" + std::to_string(k + 1));
+          int below = 0;
+          for (int layer = 1; layer <= layers; ++layer) {
+            const YarnPlan& weft = plan(yarn("layer" + std::to_string(layer) + "_", "weft", j));
+            const WovenCrossing crossing = crossing_of(warp, weft);
+            const double apart = std::abs(crossing.warp_z - crossing.weft_z),
+                         least = 0.5 * (thickness(warp, 0, crossing.x) + thickness(weft, 1, crossing.y));
+            expect(apart > least - 1e-9, warp.name + " x " + weft.name + " overlap");
+            if (crossing.weft_z < crossing.warp_z) ++below;
+          }
+          const std::vector<int>& levels = column[k].levels;
+          expect(below == levels[static_cast<std::size_t>(j - 1) % levels.size()],
+                 warp.name + " at weft " + std::to_string(j));
         }
     }
   }
