@@ -30,6 +30,7 @@ def cotton(unit="mm", tex=20, warp=0.34, weft=0.4, draft="twill 2/1", state="fin
         unit=unit, tex=tex, warp=warp / size, weft=weft / size, draft=draft, state=state, statement=statement, more=more
     )
 
+
 LAYERS = """fabric 1
 thread tow
   section ellipse 0.8 0.3

@@ -160,7 +160,8 @@ class Differences {
 
   void look_at_columns(int layers) {
     for (int i = 1; i <= weave_.warp.count; ++i) {
-      const fabric::WarpColumn& column = weave_.columns[static_cast<std::size_t>(i - 1) % weave_.columns.size()];
+      const fabric::WarpColumn& column =
+          weave_.columns[static_cast<std::size_t>(i - 1) % weave_.columns.size()];
       for (std::size_t k = 0; k < column.size(); ++k)
         for (int j = 1; j <= weave_.weft.count; ++j) {
           const YarnPlan& warp = plan(yarn("", "warp", i) + "_" + std::to_string(k + 1));
