@@ -234,10 +234,10 @@ constexpr std::array lessons = {
         "pucker tight 3 slack 6 ratio 1.08 every 12"},
     Lesson{"thickness", "weave", "thickness T", "Yarns are pressed until the cloth is no thicker than T.",
            "thickness 0.18", "length"},
-    Lesson{"layers", "weave", "layers N",
-           "So many cloths on each other; with `profile straight` so many layers of warps, with `levels` of "
-           "wefts.",
-           "layers 2", "", "1"},
+    Lesson{
+        "layers", "weave", "layers N",
+        "N cloths on each other; with `profile straight` N layers of warps, with `levels` N layers of wefts.",
+        "layers 2", "", "1"},
     Lesson{
         "levels", "weave", "levels [THREAD] L ... [, [THREAD] L ...]",
         "The warps above each other in a column, from the lowest, with L layers of weft below each at weft "

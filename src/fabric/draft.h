@@ -40,7 +40,7 @@ struct Drawdown {
   // Numbers of warps go on in both directions, too: that of a column's first one, and {column, from below}.
   [[nodiscard]] long long ends_before(long long column) const;
   [[nodiscard]] std::pair<long long, int> column_of(long long end) const;
-  // The smallest repeat, which may be a part of it: so many rows, so many columns.
+  // The smallest repeat, which may be a part of it: number of rows, number of columns.
   [[nodiscard]] long long repeat_of_picks() const;
   [[nodiscard]] long long repeat_of_ends() const;
   bool operator==(const Drawdown&) const = default;
@@ -71,8 +71,9 @@ std::string what_falls_apart(const Drawdown& drawdown);
 // its rows in.
 Result<Drawdown> drawdown_of(const Draft& draft);
 
-// Of warps above each other in columns, and so many layers of weft. Errors, at the warp: unlike numbers of
-// levels, levels beyond 0 .. layers, warps of a column that change their order (malformed); (limit) as above.
+// Of warps above each other in columns, and a number of layers of weft. Errors, at the warp: unlike numbers
+// of levels, levels beyond 0 .. layers, warps of a column that change their order (malformed); (limit) as
+// above.
 Result<Drawdown> drawdown_of(const std::vector<WarpColumn>& columns, int layers);
 
 }  // namespace selvage::fabric

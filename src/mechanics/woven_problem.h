@@ -177,8 +177,8 @@ class WovenProblem final : public BarrierProblem {
     WovenSystem system = WovenSystem::warp;
     int layer = 0;
   };
-  // Where a yarn is at a crossing: over so many of the other system, and of those of its own that lie between
-  // the same two the how-manieth from below.
+  // Where a yarn is at a crossing: how many of the other system are below it, and of its own system's yarns
+  // between the same two its number from below, and their count.
   struct Rank {
     int below = 0, place = 0, count = 1;
     bool operator==(const Rank&) const = default;

@@ -435,7 +435,7 @@ double WovenProblem::worst(const VectorXd& x) const {
     }
     least = std::min(least, static_cast<double>(function(values_of(at, values))));
   });
-  return -least;
+  return std::abs(least);
 }
 
 void WovenProblem::set_active(std::vector<char> active) {

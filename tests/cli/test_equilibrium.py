@@ -79,8 +79,12 @@ class Equilibrium(Case):
             before, after = (made["systems"][system] for made in (sheet, turned))
             self.assertAlmostEqual(after["mass"] / before["mass"], 1, delta=1e-6)
             self.assertAlmostEqual(after["crimp"] / before["crimp"], 1, delta=1e-5)
-        # No thinner than two layers of tows of the area that they have, as wide as their pitch allows.
-        self.assertGreater(sheet["thickness"], sheet["yarn_fraction"] * 4 * 0.15)
+        # Two warps a column at 10/cm, two layers of weft at 6.25/cm; masses in proportion to these and to their lengths.
+        warp, weft = sheet["systems"]["warp"], sheet["systems"]["weft"]
+        self.assertAlmostEqual(warp["per_cm"], 20, delta=1e-9)
+        self.assertAlmostEqual(weft["per_cm"], 12.5, delta=1e-9)
+        ratio = 20 * (1 + warp["crimp"]) / (12.5 * (1 + weft["crimp"]))
+        self.assertAlmostEqual(warp["mass"] / weft["mass"] / ratio, 1, delta=1e-4)
 
     def test_levels_that_no_cloth_has(self):
         for columns, place in (

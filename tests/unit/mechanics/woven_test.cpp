@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace selvage::mechanics {
 namespace {
@@ -26,6 +28,26 @@ WovenCloth cloth_of(const std::vector<std::vector<int>>& draft, double area = 0.
   for (const std::vector<int>& pick : draft)
     for (const int end : pick) cloth.warp_on_top.push_back(static_cast<char>(end));
   cloth.clearance = 0.002;
+  return cloth;
+}
+
+// Two columns and two rows with two layers of weft: levels of the warps of each column, from the lowest.
+WovenCloth layers_of(const std::vector<std::vector<std::array<int, 2>>>& columns, double area, double pitch) {
+  WovenCloth cloth = cloth_of({{0, 0}, {0, 0}}, area, pitch);
+  const WovenYarn yarn = cloth.warps.front();
+  cloth.wefts_a_row = 2;
+  cloth.wefts.assign(4, yarn);
+  cloth.warps.clear();
+  cloth.warp_on_top.clear();
+  cloth.first_warps = {0};
+  for (const auto& column : columns) {
+    cloth.warps.insert(cloth.warps.end(), column.size(), yarn);
+    cloth.first_warps.push_back(cloth.ends());
+  }
+  for (std::size_t row = 0; row < 2; ++row)
+    for (int layer = 0; layer < 2; ++layer)
+      for (const auto& column : columns)
+        for (const auto& levels : column) cloth.warp_on_top.push_back(levels[row] > layer ? 1 : 0);
   return cloth;
 }
 
@@ -62,11 +84,8 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return most;
 }
 
-TEST(Woven, DerivativesAgreeWithDifferences) {
-  WovenCloth cloth = cloth_of(twill, 1.0, 3.2);
-  cloth.wefts[1].fibre_area = 0.8;
-  cloth.clearance = 0.01;
-  cloth.thickness = 3.0;
+// At a place near the start, with all kinds of inequalities.
+void expect_derivatives(const WovenCloth& cloth) {
   WovenProblem problem(cloth, classes_of(cloth, 256));
   Minimum at;
   at.x = problem.start(0.6);
@@ -102,6 +121,44 @@ TEST(Woven, DerivativesAgreeWithDifferences) {
     const VectorXd column = (gradient_at(up) - gradient_at(down)) / (2 * step);
     for (Eigen::Index row = k; row < problem.num_unknowns(); ++row)
       EXPECT_NEAR(second.coeff(row, k), column[row], 1e-5 * (1.0 + std::abs(column[row]))) << row << ' ' << k;
+  }
+}
+
+TEST(Woven, DerivativesAgreeWithDifferences) {
+  WovenCloth cloth = cloth_of(twill, 1.0, 3.2);
+  cloth.wefts[1].fibre_area = 0.8;
+  cloth.clearance = 0.01;
+  cloth.thickness = 3.0;
+  expect_derivatives(cloth);
+}
+
+TEST(Woven, DerivativesAgreeWithDifferencesOfYarnsAboveEachOther) {
+  WovenCloth cloth = layers_of({{{1, 0}, {1, 1}, {2, 1}}, {{0, 1}, {1, 2}}}, 1.0, 3.2);
+  cloth.wefts[1].fibre_area = 0.8;
+  cloth.clearance = 0.01;
+  cloth.thickness = 6.0;
+  expect_derivatives(cloth);
+}
+
+// Nothing binds them, and nothing is between them.
+TEST(Woven, StraightYarnsAboveEachOtherTouch) {
+  WovenCloth cloth = layers_of({{{0, 0}, {1, 1}, {2, 2}}, {{0, 0}, {1, 1}, {2, 2}}}, 1.0, 3.2);
+  cloth.clearance = 0.01;
+  const WovenEquilibrium equilibrium = found(cloth);
+  const std::array<std::pair<WovenSystem, int>, 5> stack = {std::pair(WovenSystem::warp, 0),
+                                                            {WovenSystem::weft, 0},
+                                                            {WovenSystem::warp, 1},
+                                                            {WovenSystem::weft, 1},
+                                                            {WovenSystem::warp, 2}};
+  for (std::size_t k = 1; k < stack.size(); ++k) {
+    const auto [lower, below] = stack[k - 1];
+    const auto [upper, above] = stack[k];
+    const double apart =
+        equilibrium.control_height(upper, above, 0) - equilibrium.control_height(lower, below, 0);
+    const double heights =
+        equilibrium.size(lower, below, 0).height + equilibrium.size(upper, above, 0).height;
+    // Little holds them together.
+    EXPECT_NEAR(apart, 0.5 * heights + cloth.clearance, 5e-4 * heights) << k;
   }
 }
 
