@@ -79,12 +79,11 @@ class Equilibrium(Case):
             before, after = (made["systems"][system] for made in (sheet, turned))
             self.assertAlmostEqual(after["mass"] / before["mass"], 1, delta=1e-6)
             self.assertAlmostEqual(after["crimp"] / before["crimp"], 1, delta=1e-5)
-        # Two warps a column at 10/cm, two layers of weft at 6.25/cm; masses in proportion to these and to their lengths.
-        warp, weft = sheet["systems"]["warp"], sheet["systems"]["weft"]
-        self.assertAlmostEqual(warp["per_cm"], 20, delta=1e-9)
-        self.assertAlmostEqual(weft["per_cm"], 12.5, delta=1e-9)
-        ratio = 20 * (1 + warp["crimp"]) / (12.5 * (1 + weft["crimp"]))
-        self.assertAlmostEqual(warp["mass"] / weft["mass"] / ratio, 1, delta=1e-4)
+        # Two warps a column at 10/cm, two layers of weft at 6.25/cm; length of yarn in m/m2.
+        for system, per_cm in (("warp", 20), ("weft", 12.5)):
+            made = sheet["systems"][system]
+            self.assertAlmostEqual(made["per_cm"], per_cm, delta=1e-9)
+            self.assertAlmostEqual(made["length"] / (100 * per_cm * (1 + made["crimp"])), 1, delta=1e-4)
 
     def test_levels_that_no_cloth_has(self):
         for columns, place in (
