@@ -41,7 +41,8 @@ constexpr std::array keywords = {
     "plating",   "pile",       "block",    "use",       "place",        "rotate",      "mirror",
     "shear",     "repeat",     "margin",   "substrate", "points",       "helix",       "pucker",
     "mandrel",   "unit",       "crossing", "shape",     "transfer",     "drop",        "interface",
-    "stiffness", "strength",   "energy",   "planar",    "fill",         "colour",      "state"};
+    "stiffness", "strength",   "energy",   "planar",    "fill",         "colour",      "state",
+    "levels"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');
