@@ -114,8 +114,8 @@ std::vector<WovenProblem::Strand> WovenProblem::strands(Crossing at) const {
 }
 
 std::size_t WovenProblem::place_of(Strand strand, Crossing at) const {
-  return static_cast<std::size_t>(strand.layer +
-                                  (strand.system == WovenSystem::warp ? 0 : count(WovenSystem::warp, at)));
+  const int place = strand.layer + (strand.system == WovenSystem::warp ? 0 : count(WovenSystem::warp, at));
+  return static_cast<std::size_t>(place);
 }
 
 WovenProblem::Rank WovenProblem::rank(Strand strand, Crossing at) const {
@@ -181,18 +181,17 @@ double WovenProblem::gap(WovenSystem system, Crossing at, int from) const {
 }
 
 const WovenYarn& WovenProblem::yarn(Strand strand, Crossing at) const {
-  const int first = strand.system == WovenSystem::warp ? cloth_.first_warp(wrapped(at.end, cloth_.columns()))
-                                                       : wrapped(at.pick, cloth_.rows()) * cloth_.wefts_a_row;
-  return (strand.system == WovenSystem::warp ? cloth_.warps
-                                             : cloth_.wefts)[static_cast<std::size_t>(first + strand.layer)];
+  const bool is_warp = strand.system == WovenSystem::warp;
+  const int number = strand.layer + (is_warp ? cloth_.first_warp(wrapped(at.end, cloth_.columns()))
+                                             : wrapped(at.pick, cloth_.rows()) * cloth_.wefts_a_row);
+  return (is_warp ? cloth_.warps : cloth_.wefts)[static_cast<std::size_t>(number)];
 }
 
 bool WovenProblem::warp_on_top(Crossing at, int warp_layer, int weft_layer) const {
-  const auto weft =
-                 static_cast<std::size_t>(wrapped(at.pick, cloth_.rows()) * cloth_.wefts_a_row + weft_layer),
-             warp =
-                 static_cast<std::size_t>(cloth_.first_warp(wrapped(at.end, cloth_.columns())) + warp_layer);
-  return cloth_.warp_on_top[weft * cloth_.warps.size() + warp] != 0;
+  const int weft = wrapped(at.pick, cloth_.rows()) * cloth_.wefts_a_row + weft_layer,
+            warp = cloth_.first_warp(wrapped(at.end, cloth_.columns())) + warp_layer;
+  return cloth_.warp_on_top[static_cast<std::size_t>(weft) * cloth_.warps.size() +
+                            static_cast<std::size_t>(warp)] != 0;
 }
 
 std::size_t WovenProblem::first_station(Strand strand, Crossing at) const {
