@@ -106,7 +106,7 @@ std::string equilibrium_text() {
          "    ellipses), and with --as-published;\n"
          "  with `pucker`, `binder` and `draft leno`, which exclude a state;\n"
          "  where a thread has a section of another form (lenticular, racetrack, power, polygon),\n"
-         "    unless the weave has a state;\n"
+         "    unless the weave has a state or `levels`;\n"
          "  in drafts whose repeat has more than 256 kinds of crossings, with a warning. Up to there\n"
          "    a draft takes 10 ms (plain) to 10 s.\n"
          "\n"

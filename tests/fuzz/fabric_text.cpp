@@ -116,6 +116,12 @@ class Writer {
       line("end");
       return;
     }
+    if (choice(6) == 1) {
+      line(" layers 2\n levels {} {} , b {} 2", choice(2), choice(2), 1 + choice(2));
+      line(" levels {} {}", choice(3), choice(3));
+      line("end");
+      return;
+    }
     if (choice(3) == 1) {
       const int width = 1 + choice(4);
       line(" draft");

@@ -48,6 +48,10 @@ std::string chart(const std::string& rows) {
 std::string weave(std::string draft, std::string extra = "") {
   return with_thread("weave\n  warp t 4 pitch 1\n  weft t 4 pitch 1\n  " + draft + "\n" + extra + "end\n");
 }
+// `lines` begin on line 8.
+std::string levels(const std::string& lines) {
+  return with_thread("weave\n warp t 4 pitch 1\n weft t 4 pitch 1\n" + lines + "\nend\n");
+}
 // `line` stands instead of the statement that begins with its first word; the block begins on line 5.
 std::string braid(const std::string& line) {
   std::string text = "braid\n";
@@ -448,6 +452,23 @@ const std::vector<Case> construction_cases = {
     {"weave_state_pucker",
      weave("draft plain\npucker tight 2 slack 2 ratio 1.1 every 4\nstate finished"),
      {{10, 1, "leave out the pucker"}}},
+    {"levels_beyond", levels(" layers 2\n levels 1 0 , 3 1"), {{9, 15, "write 'layers 3'"}}},
+    {"levels_unlike", levels(" layers 2\n levels 1 0\n levels 2 1 2"), {{10, 9, "3 levels"}}},
+    {"levels_exchanged", levels(" layers 2\n levels 2 1, 1 0"), {{9, 14, "write '1 0 , 2 1'"}}},
+    {"levels_crossing", levels(" layers 2\n levels 2 0 , 1 1"), {{9, 15, "of its own"}}},
+    {"levels_none", levels(" levels"), {{8, 8, "a level for each weft"}}},
+    {"levels_no_warp", levels(" levels 1 0 ,"), {{8, 14, "a level for each weft"}}},
+    {"levels_sign", levels(" levels 1 -1"), {{8, 11, "0 or more"}}},
+    {"levels_thread", levels(" levels s 1 0"), {{8, 9, "unknown thread"}}},
+    {"levels_draft", levels(" levels 1 0\n draft plain"), {{8, 2, "leave out 'draft'"}}},
+    {"levels_profile", levels(" levels 1 0\n profile sine"), {{8, 2, "leave out 'profile'"}}},
+    {"levels_binder", levels(" levels 1 0\n binder t every 2 levels 0 1"), {{8, 2, "leave out 'binder'"}}},
+    {"levels_pucker",
+     levels(" levels 1 0\n pucker tight 2 slack 2 ratio 1.1 every 4"),
+     {{8, 2, "leave out 'pucker'"}}},
+    {"levels_leno", levels(" levels 1 0\n draft leno"), {{8, 2, "leave out 'draft'"}}},
+    {"levels_crimp", levels(" levels 1 0\n crimp 0.5"), {{8, 2, "leave out 'crimp'"}}},
+    {"levels_spacing", levels(" levels 1 0\n spacing relaxed"), {{8, 2, "leave out 'spacing'"}}},
     {"draft_sign", weave("draft\n10\n02\nend"), {{10, 2, "signs 0 and 1"}}},
     {"draft_width", weave("draft\n10\n011\nend"), {{10, 1, "3 signs, the first one has 2"}}},
     {"draft_empty", weave("draft\nend"), {{9, 1, "no rows"}}},

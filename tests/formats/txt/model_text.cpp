@@ -244,6 +244,10 @@ class Flat {
     add(path + ".first", v.first);
     add(path + ".levels", v.levels);
   }
+  void add(const std::string& path, const StackedWarp& v) {
+    add(path + ".thread", v.thread);
+    add(path + ".levels", v.levels);
+  }
   void add(const std::string& path, const Pucker& v) {
     add(path + ".tight", v.tight);
     add(path + ".slack", v.slack);
@@ -267,6 +271,7 @@ class Flat {
     add(path + ".thickness", v.thickness);
     add(path + ".layers", v.layers);
     add(path + ".binders", v.binders);
+    add(path + ".columns", v.columns);
   }
   void add(const std::string& path, const OwnLoop& v) {
     add(path + ".sign", std::string(1, v.sign));

@@ -407,6 +407,14 @@ class Maker {
             binder.first = count();
             for (int k = up_to(4); k >= 0; --k) binder.levels.push_back(up_to(5));
           }
+        } else if (!weave.profile && coin()) {
+          for (int c = up_to(2); c >= 0; --c) {
+            WarpColumn& column = weave.columns.emplace_back();
+            for (int k = up_to(2); k >= 0; --k)
+              column.push_back(
+                  {coin() ? one_of(threads_) : "", {}, {k > 0 ? 0 : weave.layers.value_or(1), 1}});
+            std::ranges::sort(column, {}, &StackedWarp::levels);
+          }
         } else {
           weave.draft = draft();
           maybe(weave.crimp, [&] { return up_to(8) / 8.0; });

@@ -433,6 +433,55 @@ TEST(Weave, BindersThatCannotBeAreRefusedAtTheirLines) {
   EXPECT_EQ(refused({"d", {10, 3}, 1, 1, {0, 3}}).place.line, 10);
 }
 
+TEST(Weave, WarpsOfAColumnLieAboveEachOtherInTheirOrder) {
+  Fabric fabric = square(0.3, 0.8);
+  fabric.threads.push_back(thread_of("c", yarn::Circle{0.4}));
+  Weave& weave = weave_of(fabric);
+  weave.warp.count = 3;
+  weave.layers = 2;
+  weave.columns = {{{"", {7, 3}, {1, 0}}, {"c", {7, 9}, {1, 1}}, {"", {7, 15}, {2, 1}}},
+                   {{"", {8, 3}, {0, 2}}}};
+  const YarnBuilder builder = builder_of(fabric, {});
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < builder.count(); ++i) names.push_back(builder.plan(i)->name);
+  const std::vector<std::string> expected = {
+      "warp_1_1",      "warp_1_2",      "warp_1_3",      "warp_2_1",      "warp_3_1",
+      "warp_3_2",      "warp_3_3",      "layer1_weft_1", "layer1_weft_2", "layer1_weft_3",
+      "layer1_weft_4", "layer2_weft_1", "layer2_weft_2", "layer2_weft_3", "layer2_weft_4"};
+  EXPECT_EQ(names, expected);
+  EXPECT_EQ(plan_of(fabric, "warp_3_2", {}).thread.name, "c");
+  // At each weft (points are those of crossings): the warps of the column, and wefts between them.
+  const auto heights = [&](const char* name) {
+    std::vector<double> made;
+    const YarnPlan plan = plan_of(fabric, name, {});
+    for (const Vec3& point : plan.points) made.push_back(point.z());
+    return made;
+  };
+  const std::vector<double> low = heights("warp_1_1"), middle = heights("warp_1_2"),
+                            high = heights("warp_1_3");
+  for (const std::vector<double>* line : {&middle, &high}) ASSERT_EQ(line->size(), low.size());
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    EXPECT_GT(middle[k] - low[k], 0.25) << k;
+    EXPECT_GT(high[k] - middle[k], 0.25) << k;
+  }
+  // y is at 0.4, 1.2, ...: all warps of a column at one place.
+  for (const char* name : {"warp_3_1", "warp_3_2", "warp_3_3"})
+    EXPECT_NEAR(plan_of(fabric, name, {}).points.front().y(), 2.0, 1e-12);
+}
+
+TEST(Weave, LevelsThatCannotBeAreRefusedAtTheirWarps) {
+  const auto refused = [](std::vector<WarpColumn> columns) {
+    Fabric fabric = square(0.3, 0.8);
+    weave_of(fabric).layers = 2;
+    weave_of(fabric).columns = std::move(columns);
+    return refusal_of(fabric);
+  };
+  EXPECT_EQ(refused({{{"", {7, 3}, {1, 3}}}}).place.line, 7);
+  EXPECT_EQ(refused({{{"", {7, 3}, {1, 2}}}, {{"", {8, 3}, {1}}}}).place.line, 8);
+  EXPECT_EQ(refused({{{"", {7, 3}, {1, 2}}, {"", {7, 9}, {2, 1}}}}).place.column, 9);
+  EXPECT_EQ(refused({{{"", {7, 3}, {1, 2}}}, {{"d", {8, 3}, {1, 2}}}}).place.line, 8);
+}
+
 TEST(Weave, APolygonLiesAboutItsCentreLineWhereverItsOriginIs) {
   const auto weft = [](const Vec2& origin) {
     yarn::Polygon triangle{{{0.3, -0.1}, {0.0, 0.25}, {-0.3, -0.1}}};
