@@ -319,6 +319,8 @@ void write_draft(Lines& out, const fabric::Draft& draft) {
     out.word(word_of(leno_words, draft.full_turns));
   else if (draft.form == Draft::Form::satin && draft.b == 0)
     out.value(draft.a);
+  else if (draft.has_pile())
+    out.value(draft.a);
   else if (draft.form != Draft::Form::plain)
     write_pair(out, draft.a, "/", draft.b);
   for (const int count : draft.further) out.raw(fmt::format("/{}", count));
@@ -347,6 +349,12 @@ void write_item(Lines& out, const fabric::Weave& weave) {
     if (binder.first != 1) out.word("first").value(binder.first);
     out.word("levels");
     for (int level : binder.levels) out.value(level);
+  }
+  if (weave.pile) {
+    out.line(1, "pile").value(weave.pile->height);
+    if (!weave.pile->thread.empty()) out.name(weave.pile->thread);
+    out.word("every").value(weave.pile->picks).word(word_of(pile_words, weave.pile->side));
+    if (weave.pile->is_cut) out.word("cut");
   }
   out.line(0, "end");
 }

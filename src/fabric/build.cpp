@@ -65,6 +65,7 @@ std::vector<std::string> threads_of(const Item& item) {
                           Names names = weave.warp.threads;
                           names.insert(names.end(), weave.weft.threads.begin(), weave.weft.threads.end());
                           for (const Binder& binder : weave.binders) names.push_back(binder.thread);
+                          if (weave.pile && !weave.pile->thread.empty()) names.push_back(weave.pile->thread);
                           return names;
                         },
                         [](const Knit& knit) {

@@ -554,6 +554,7 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
   sheet.place = place_of(item);
   sheet.file = fabric.file;
   sheet.equilibrium = cloth.equilibrium();
+  sheet.pile = cloth.pile();
   return sheet;
 }
 

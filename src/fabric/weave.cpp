@@ -60,8 +60,8 @@ Reach reach_over(const System& crossed, bool has_cell, double low, double high) 
   return {static_cast<double>(-before) * pitch, static_cast<double>(last + 1) * pitch, -before, last};
 }
 
-// The numbers of a row's yarns: those of the text, and in a cell that is periodic across them those beyond
-// the cloth's edges, too, that reach into it.
+}  // namespace
+
 std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, double low, double high) {
   if (!is_periodic) return {0, row.count};
   constexpr double most = 1e9;  // past what any limit lets through
@@ -72,8 +72,6 @@ std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, dou
           std::max(row.count, -number(2.0 * row.first - high - 0.5 * row.width))};
 }
 
-}  // namespace
-
 WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, const BuildOptions& options,
                                      System warp, System weft)
     : fabric_(fabric),
@@ -81,9 +79,12 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
       as_published_(options.as_published),
       warp_(std::move(warp)),
       weft_(std::move(weft)),
-      has_only_formula_(!weave.state && (options.as_published || weave.profile || weave.amplitude ||
-                                         any_section(is_polygon))),
-      has_formula_(!weave.state && (has_only_formula_ || weave.pucker || any_section(has_form))) {
+      has_only_formula_(
+          !weave.state && !has_pile() &&
+          (options.as_published || weave.profile || weave.amplitude || any_section(is_polygon))),
+      has_formula_(!weave.state && !has_pile() &&
+                   (has_only_formula_ || weave.pucker || any_section(has_form))),
+      options_(options) {
   const bool has_cell = fabric.cell.has_value();
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
@@ -176,7 +177,7 @@ bool WeaveConstruction::is_over_dense(const System& warp, const System& weft) {
 }
 
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
-  Result<Drawdown> drawdown = drawdown_of(weave_.draft);
+  Result<Drawdown> drawdown = has_pile() ? pile_drawdown() : drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
   Diagnostics own;
@@ -184,6 +185,7 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   if (!made && is_jammed_ && warp_.text->is_drawn) made = fit_drawing(own);
   if (!made) return is_jammed_ ? jammed(made.error()) : made;
   for (const Message& message : own.messages()) diagnostics.add(message);
+  if (has_pile()) return prepare_pile(diagnostics);
   for (int layer = 0; layer < layers(); ++layer) {
     add_block(Block::Kind::warp, layer, 0, row_of(warp_));
     add_block(Block::Kind::weft, layer, 0, row_of(weft_));
@@ -232,6 +234,7 @@ Status WeaveConstruction::prepare_heights(Diagnostics& diagnostics) {
     Status found = prepare_equilibrium(diagnostics);
     if (found || found.error().kind != Kind::limit) return found;
     const std::string text = fmt::format("no equilibrium of the cloth is looked for: {}", found.error().text);
+    if (has_pile()) return error(Kind::limit, text + ", which a pile needs").placed(weave_.place);
     if (weave_.state)
       return error(Kind::limit, text + "; without 'state' a formula gives heights and sections")
           .placed(weave_.place);
@@ -428,6 +431,10 @@ Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
 }
 
 WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
+  if (has_pile()) {
+    static constexpr std::array<Block, 2> of_kind = {Block{Block::Kind::warp}, Block{Block::Kind::weft}};
+    return {&of_kind[pile_yarns_[index].kind == Block::Kind::weft ? 1 : 0], pile_yarns_[index].yarn};
+  }
   const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), index,
                                       [](std::size_t i, const Block& block) { return i < block.first; });
   const Block& block = *std::prev(after);
@@ -435,12 +442,14 @@ WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
 }
 
 std::string WeaveConstruction::system(std::size_t index) const {
+  if (has_pile() && pile_yarns_[index].is_pile) return "pile";
   const Block::Kind kind = place_of(index).block->kind;
   if (kind == Block::Kind::binder) return "binder";
   return kind == Block::Kind::warp ? "warp" : "weft";
 }
 
 std::string WeaveConstruction::name(std::size_t index) const {
+  if (has_pile()) return pile_name(pile_yarns_[index]);
   const auto [block, yarn] = place_of(index);
   if (block->kind == Block::Kind::binder) {
     // Line by line, and then those beyond the cloth's edges.
@@ -565,6 +574,10 @@ Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
     return plan;
   }
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
+  if (has_pile() && pile_yarns_[index].is_pile) {
+    if (Status made = plan_pile(*plan, pile_yarns_[index]); !made) return made.error();
+    return plan;
+  }
   if (equilibrium_) {
     equilibrium_->shape(*plan, is_weft, yarn, reach.from, reach.to, to_place);
     return plan;
@@ -596,20 +609,34 @@ Repeat WeaveConstruction::repeat() const {
   }
   if (wefts > longest_repeat || warps > longest_repeat) return {};
   wefts = std::lcm(wefts, weft_.repeat_of_threads());
-  warps = std::lcm(warps, warp_.repeat_of_threads());
+  warps =
+      std::lcm(warps, std::lcm(warp_.repeat_of_threads(), static_cast<long long>(warp_.text->ends_of_one)));
   return {static_cast<double>(wefts) * weft_.text->pitch, static_cast<double>(warps) * warp_.text->pitch,
           std::nullopt};
 }
 
-Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
-                                                 const BuildOptions& options, Diagnostics& diagnostics) {
+Result<std::unique_ptr<WeaveConstruction>> WeaveConstruction::make(const Fabric& fabric, const Weave& weave,
+                                                                   const BuildOptions& options) {
   Result<System> warp = system_of(fabric, weave.warp);
   if (!warp) return warp.error();
   Result<System> weft = system_of(fabric, weave.weft);
   if (!weft) return weft.error();
-  auto made = std::make_unique<WeaveConstruction>(fabric, weave, options, std::move(*warp), std::move(*weft));
-  if (Status prepared = made->prepare(diagnostics); !prepared) return prepared.error();
-  return std::unique_ptr<Construction>(std::move(made));
+  if (weave.pile) {
+    const std::string& name = weave.pile->thread;
+    Result<WovenThread> pile =
+        woven_thread(fabric, name.empty() ? weave.warp.threads.front() : name, weave.pile->place);
+    if (!pile) return pile.error();
+    *warp = with_pile_ends(std::move(*warp), std::move(*pile));
+  }
+  return std::make_unique<WeaveConstruction>(fabric, weave, options, std::move(*warp), std::move(*weft));
+}
+
+Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
+                                                 const BuildOptions& options, Diagnostics& diagnostics) {
+  Result<std::unique_ptr<WeaveConstruction>> made = WeaveConstruction::make(fabric, weave, options);
+  if (!made) return made.error();
+  if (Status prepared = (*made)->prepare(diagnostics); !prepared) return prepared.error();
+  return std::unique_ptr<Construction>(std::move(*made));
 }
 
 }  // namespace selvage::fabric

@@ -1,6 +1,7 @@
 // One of a weave's two systems, warp or weft: its threads with their sections, and where its yarns are.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -17,7 +18,8 @@ struct WovenThread {
 
 struct System {
   const WeaveSystem* text = nullptr;
-  std::vector<WovenThread> threads;  // used in turn, as the text lists them
+  std::shared_ptr<const WeaveSystem> own_text{};  // what `text` is where the fabric does not have it
+  std::vector<WovenThread> threads;               // used in turn, as the text lists them
   double thickest = 0, widest = 0;
 
   // Where spacing is not even: by how much the yarns of a repeat lie off their even places.

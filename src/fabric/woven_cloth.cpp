@@ -184,6 +184,13 @@ double ClothInEquilibrium::height(bool is_weft, long long yarn, long long crossi
          0.5 * (top_ + bottom_);
 }
 
+yarn::SectionSize ClothInEquilibrium::size(bool is_weft, long long yarn, long long crossing) const {
+  const long long yarns = is_weft ? cloth_.picks() : cloth_.ends();
+  const auto size = equilibrium_.size(system_of(is_weft), static_cast<int>(wrapped(yarn, yarns)),
+                                      static_cast<double>(crossing));
+  return {size.width, size.height};
+}
+
 void ClothInEquilibrium::shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
                                Vec3 (*to_place)(double s, double z, double across)) const {
   constexpr int stations = 8;  // of sizes, from crossing to crossing

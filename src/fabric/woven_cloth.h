@@ -34,6 +34,7 @@ class ClothInEquilibrium {
   // its section and its sizes. Yarns are numbered from 0, in both directions without end.
   void shape(YarnPlan& plan, bool is_weft, long long yarn, double from, double to,
              Vec3 (*to_place)(double s, double z, double across)) const;
+  [[nodiscard]] yarn::SectionSize size(bool is_weft, long long yarn, long long crossing) const;
   // Height of a yarn's axis at a crossing.
   [[nodiscard]] double height(bool is_weft, long long yarn, long long crossing) const;
   [[nodiscard]] double thickness() const { return top_ - bottom_; }
