@@ -224,7 +224,8 @@ Result<Drawdown> WeaveConstruction::pile_drawdown() const {
     return made;
   }
   made.ends = weave_.draft.a;
-  const int kinds = weave_.draft.form == Draft::Form::corduroy ? 2 : made.ends / 2;
+  const bool is_corduroy = weave_.draft.form == Draft::Form::corduroy;
+  const int kinds = is_corduroy ? 2 : made.ends / 2;
   const auto listed = static_cast<std::uint64_t>(weft_.threads.size());
   const std::uint64_t picks = product_of(listed, static_cast<std::uint64_t>(std::lcm(2, kinds)));
   if (product_of(picks, static_cast<std::uint64_t>(made.ends)) > most_crossings_by_numbers)
@@ -234,7 +235,7 @@ Result<Drawdown> WeaveConstruction::pile_drawdown() const {
   for (int pick = 0; pick < made.picks; ++pick) {
     const bool is_of_pile = is_pile(true, pick);
     const int of_kind = (is_of_pile ? piles : grounds)++;
-    const int binding = kinds == 2 ? of_kind % 2 : 2 * (of_kind % kinds);
+    const int binding = is_corduroy ? made.ends / 2 - of_kind % 2 : 2 * (of_kind % kinds);
     for (int end = 0; end < made.ends; ++end)
       made.bits.push_back(is_of_pile ? end == binding : (of_kind + end) % 2 == 0);
   }
@@ -470,7 +471,9 @@ Status WeaveConstruction::prepare_pile(Diagnostics& diagnostics) {
         pile_yarns_.insert(pile_yarns_.end(), parts.begin(), parts.end());
       } else {
         made = parts.front();
-        made.last = parts.back().last;
+        // A loop that ends at the cloth's edge ends with its foot there.
+        made.ends_at_foot = !goes_on && bound_from(yarn, reach.last + 1);
+        made.last = made.ends_at_foot ? reach.last + 1 : parts.back().last;
         pile_yarns_.push_back(made);
       }
     }
@@ -533,11 +536,12 @@ Status WeaveConstruction::plan_pile(YarnPlan& plan, const PileYarn& pile) const 
       line.insert(line.end(), down.begin() + (is_cut ? 0 : 1), down.end());
       if (is_cut) sizes.emplace_back(0, part.sizes.front());
     }
-    for (std::size_t i = 0; i < part.points.size(); ++i) {
+    const bool is_edge = pile.ends_at_foot && k == pile.last;
+    for (std::size_t i = 0; i < (is_edge ? 1 : part.points.size()); ++i) {
       if (i % 2 == 0) sizes.emplace_back(line.size(), part.sizes[i]);
       line.push_back(part.points[i]);
     }
-    if (is_cut || *last < pile.last) {
+    if (is_cut || (!is_edge && *last < pile.last)) {
       const std::vector<Vec2> up = free(part, 1);
       line.insert(line.end(), up.begin(), up.end());
       if (is_cut) sizes.emplace_back(line.size() - 1, part.sizes.back());
