@@ -328,6 +328,7 @@ std::optional<double> WeaveConstruction::least_thickness() const {
 // With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and
 // yarns.
 Message WeaveConstruction::jammed(const Message& failure) const {
+  if (!seeks_remedies_) return failure;
   const LooseCloth cloth{warp_, weft_, fabric_.units};
   if (has_formula_)
     return error(failure.kind, fmt::format("the cloth is jammed: {}; {}", failure.text,

@@ -45,7 +45,7 @@ struct PileYarn {
   long long first = 0, last = 0;  // of pile: the crossings from the first to the last that bind it
   int number = 0;                 // of a tuft, from 1 in the cloth
   bool is_tuft = false;
-  bool ends_at_foot = false;      // an end of pile whose `last` has but the foot of its last loop
+  bool ends_at_foot = false;  // an end of pile whose `last` has but the foot of its last loop
 };
 
 // Yarns side by side: how many the text counts, where they lie, and how wide they are.

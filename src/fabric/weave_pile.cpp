@@ -16,6 +16,7 @@
 #include "fabric/clearance.h"
 #include "fabric/weave_construction.h"
 #include "nurbs/measure.h"
+#include "nurbs/roots.h"
 
 namespace selvage::fabric {
 
@@ -39,9 +40,12 @@ double smooth(double u) {
 
 // From one direction to another one, beginning at the origin; `radius` is the least on the way. `part`: of
 // the whole turn, which is symmetrical about its middle.
+double turn_length(double from, double to, double radius) {
+  return 1.5 * radius * std::abs(to - from);
+}
 std::vector<Vec2> turn(double from, double to, double radius, double part = 1.0) {
   constexpr int substeps = 16;
-  const double length = part * 1.5 * radius * std::abs(to - from);
+  const double length = part * turn_length(from, to, radius);
   std::vector<Vec2> points;
   Vec2 at = Vec2::Zero();
   for (int i = 0; i < points_a_turn; ++i) {
@@ -77,82 +81,84 @@ void append_straight(std::vector<Vec2>& line, double angle, double length) {
 
 // A yarn's free part from its foot: x towards the middle of the float, y out of the cloth.
 struct WeaveConstruction::Leg {
+  struct Crossed {
+    Vec2 at;
+    std::vector<Vec2> section;
+    [[nodiscard]] double distance(const Vec2& point) const { return signed_distance(section, point - at); }
+  };
   double angle = 0;  // at the foot
   double reach = 0;  // to the middle of the float
-  double thickness = 0;
+  double thickness = 0, apex_thickness = 0;
   double clearance = 0;
-  Vec2 bound = Vec2::Zero();  // of the yarn that binds it
-  std::vector<Vec2> bound_section;
+  std::array<Crossed, 2> crossed;  // the yarn that binds it, and the first one of the float
 
-  [[nodiscard]] double room() const { return 0.5 * (thickness + clearance); }
-
-  // The straight and the turn to `to` beside the yarn that binds it.
-  [[nodiscard]] std::vector<Vec2> foot(double to, double radius) const {
-    const auto distance = [&](const Vec2& point) { return signed_distance(bound_section, point - bound); };
-    const double needed = std::min(0.5 * thickness + 0.9 * clearance, distance(Vec2::Zero()));
-    std::vector<Vec2> line;
-    for (double lead = 0.0; lead <= most_lead; lead += lead_step) {
-      line.clear();
-      if (lead > 0.0) line.emplace_back(lead * thickness * Vec2(std::cos(angle), std::sin(angle)));
-      append(line, turn(angle, to, radius));
-      if (std::all_of(line.begin(), line.end(), [&](const Vec2& p) { return distance(p) >= needed; })) break;
+  // Apart from both, nowhere over the middle of what binds it, and before the middle of the float but for the
+  // last `tops` points.
+  [[nodiscard]] bool has_room(const std::vector<Vec2>& line, std::ptrdiff_t tops) const {
+    const double half = 0.5 * (thickness + clearance);
+    for (const Crossed& yarn : crossed) {
+      const double needed = std::min(0.5 * thickness + 0.9 * clearance, yarn.distance(Vec2::Zero()));
+      for (const Vec2& point : line)
+        if (yarn.distance(point) < needed || point.x() < crossed[0].at.x() + half) return false;
     }
+    return std::all_of(line.begin(), line.end() - tops,
+                       [&](const Vec2& point) { return point.x() <= reach - half; });
+  }
+  // A straight and a turn.
+  [[nodiscard]] std::vector<Vec2> foot(double to, double radius, double lead) const {
+    std::vector<Vec2> line;
+    if (lead > 0.0) line.emplace_back(lead * Vec2(std::cos(angle), std::sin(angle)));
+    append(line, turn(angle, to, radius));
     return line;
   }
-  // Neither over the middle of what binds it nor over the middle of the float.
-  [[nodiscard]] bool has_room(const std::vector<Vec2>& line) const {
-    return std::all_of(line.begin(), line.end(), [&](const Vec2& point) {
-      return point.x() >= bound.x() + room() && point.x() <= reach - room();
-    });
+  // The first that there is with feet of these turns and straights, from the widest one; else none.
+  template <class With>
+  [[nodiscard]] std::optional<std::vector<Vec2>> first_of(const With& with) const {
+    for (double radius = usual_turn; radius >= least_turn; radius *= 0.9)
+      for (double lead = 0.0; lead <= most_lead; lead += lead_step)
+        if (auto line = with(radius * thickness, lead * thickness)) return line;
+    return std::nullopt;
   }
 
   // Upright, so high or so long in all; none: it has no room.
   [[nodiscard]] std::optional<std::vector<Vec2>> cut(std::optional<double> height, double length) const {
-    for (double radius = usual_turn; radius >= least_turn; radius *= 0.9) {
-      std::vector<Vec2> line = foot(0.5 * pi, radius * thickness);
-      if (!has_room(line)) continue;
-      double gone = line.front().norm();
-      for (std::size_t i = 1; i < line.size(); ++i) gone += (line[i] - line[i - 1]).norm();
-      const double straight = height ? *height - line.back().y() : length - gone;
-      if (straight <= 0.0) continue;
+    return first_of([&](double radius, double lead) -> std::optional<std::vector<Vec2>> {
+      std::vector<Vec2> line = foot(0.5 * pi, radius, lead);
+      const double straight =
+          height ? *height - line.back().y() : length - lead - turn_length(angle, 0.5 * pi, radius);
+      if (straight <= 0.0 || !has_room(line, 0)) return std::nullopt;
       append_straight(line, 0.5 * pi, straight);
       return line;
-    }
-    return std::nullopt;
+    });
   }
 
   // To the apex of a loop, so high; none: it has no room.
   [[nodiscard]] std::optional<std::vector<Vec2>> loop(double height) const {
-    for (double below = usual_turn; below >= least_turn; below *= 0.9) {
-      const double upright = foot(0.5 * pi, below * thickness).back().x();
-      double top = std::max((reach - upright) / half_top(0.5 * pi, 1.0).back().x(), least_turn * thickness);
-      for (; top >= least_turn * thickness; top *= 0.9) {
-        // The straight between both turns, and by how much the apex misses the middle.
+    return first_of([&](double radius, double lead) -> std::optional<std::vector<Vec2>> {
+      if (!has_room(foot(0.5 * pi, radius, lead), 0)) return std::nullopt;
+      const double left = reach - foot(0.5 * pi, radius, lead).back().x();
+      for (double top = std::max(left / half_top(0.5 * pi, 1.0).back().x(), least_turn * thickness);
+           top >= least_turn * thickness; top *= 0.9) {
+        // The straight between both turns, and by how much the apex lies beyond the middle.
         const auto straight_at = [&](double leg) {
-          return (height - foot(leg, below * thickness).back().y() - half_top(leg, top).back().y()) /
+          return (height - foot(leg, radius, lead).back().y() - half_top(leg, top).back().y()) /
                  std::sin(leg);
         };
         const auto beyond = [&](double leg) {
-          return foot(leg, below * thickness).back().x() + straight_at(leg) * std::cos(leg) +
+          return foot(leg, radius, lead).back().x() + straight_at(leg) * std::cos(leg) +
                  half_top(leg, top).back().x() - reach;
         };
-        double low = flattest, high = most_overhang;
+        double low = std::max(angle, flattest), high = most_overhang;
         if (beyond(low) < 0.0 || beyond(high) > 0.0) continue;
-        for (int step = 0; step < 40; ++step) {
-          const double middle = 0.5 * (low + high);
-          (beyond(middle) > 0.0 ? low : high) = middle;
-        }
-        const double leg = 0.5 * (low + high), straight = straight_at(leg);
-        if (straight < 0.0) continue;
-        std::vector<Vec2> line = foot(leg, below * thickness);
-        append_straight(line, leg, straight);
-        if (!has_room(line)) continue;
-        append(line, half_top(leg, top));
-        line.back().x() = reach;
-        return line;
+        nurbs::halve_between(low, high, 50, [&](double leg) { return beyond(leg) > 0.0; });
+        const double straight = straight_at(low);
+        std::vector<Vec2> line = foot(low, radius, lead);
+        append_straight(line, low, straight);
+        append(line, half_top(low, top));
+        if (straight >= 0.0 && has_room(line, points_a_turn)) return line;
       }
-    }
-    return std::nullopt;
+      return std::nullopt;
+    });
   }
 };
 
@@ -295,15 +301,20 @@ WeaveConstruction::BoundPart WeaveConstruction::bound_part(long long yarn, long 
         is_forward ? at(static_cast<double>(after) - 0.5) : at(static_cast<double>(before) + 0.5);
     const long long binding = is_forward ? last : first;
     const Vec3 slope = nurbs::evaluate_jet(line, parameter(foot.x())).d1;
-    const auto size = equilibrium_->size(!is_weft, binding, yarn);
     Leg& leg = part.legs[side];
     leg.angle = std::atan2(way * up * slope.z(), slope.x());
     leg.reach = 0.5 * std::abs(other - foot.x());
     leg.thickness = (is_forward ? part.sizes.back() : part.sizes.front()).height;
+    leg.apex_thickness = 0.5 * (leg.thickness + size_at(other).height);
     leg.clearance = clearance_;
-    leg.bound = Vec2(way * (at(static_cast<double>(binding)) - foot.x()),
-                     up * equilibrium_->height(!is_weft, binding, yarn) - foot.y());
-    leg.bound_section = outline_polygon(yarn::Ellipse{size.width, size.height});
+    for (const int k : {0, 1}) {
+      const long long crossing = binding + (is_forward ? k : -k);
+      const auto size = equilibrium_->size(!is_weft, crossing, yarn);
+      leg.crossed[static_cast<std::size_t>(k)] = {
+          {way * (at(static_cast<double>(crossing)) - foot.x()),
+           up * equilibrium_->height(!is_weft, crossing, yarn) - foot.y()},
+          outline_polygon(yarn::Ellipse{size.width, size.height})};
+    }
     part.lengths[side] = 0.5 * nurbs::arc_length(line, std::min(parameter(foot.x()), parameter(other)),
                                                  std::max(parameter(foot.x()), parameter(other)));
   }
@@ -317,7 +328,9 @@ std::optional<std::vector<Vec2>> WeaveConstruction::free_part(const BoundPart& p
   const Vec2& foot = side == 1 ? part.points.back() : part.points.front();
   const double top = (is_up ? ground_top_ : -ground_bottom_) + height - foot.y();
   if (!weave_.pile) return leg.cut(std::nullopt, part.lengths[side]);
-  return weave_.pile->is_cut ? leg.cut(top, 0.0) : leg.loop(top - 0.5 * leg.thickness);
+  if (weave_.pile->is_cut) return leg.cut(top, 0.0);
+  if (height < leg.apex_thickness + clearance_) return std::nullopt;
+  return leg.loop(top - 0.5 * leg.apex_thickness);
 }
 
 bool WeaveConstruction::pile_fits(double height) {
