@@ -105,9 +105,8 @@ class GmshReader {
     if (numbers_.size() >= least) return true;
     return fail(fmt::format("{} numbers are expected here", least));
   }
-  [[nodiscard]] long whole(std::size_t k) const {
-    return std::abs(numbers_[k]) < 1e15 ? static_cast<long>(numbers_[k]) : 0;
-  }
+  static long whole_number(double value) { return std::abs(value) < 1e15 ? static_cast<long>(value) : 0; }
+  [[nodiscard]] long whole(std::size_t k) const { return whole_number(numbers_[k]); }
 
   bool read_format() {
     if (!next_numbers(3)) return false;
@@ -135,8 +134,7 @@ class GmshReader {
         return fail("a dimension, a tag and a name in quotes are expected here");
       const std::optional<double> dimension = read_number(words[0]), tag = read_number(words[1]);
       if (dimension && tag)
-        names_[{static_cast<long>(*dimension), static_cast<long>(*tag)}] =
-            line.substr(open + 1, close - open - 1);
+        names_[{whole_number(*dimension), whole_number(*tag)}] = line.substr(open + 1, close - open - 1);
     }
     return true;
   }

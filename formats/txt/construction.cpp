@@ -10,6 +10,7 @@
 #include "formats/txt/pitch.h"
 #include "formats/txt/slip.h"
 #include "formats/txt/trade_draft.h"
+#include "mechanics/constants.h"
 
 namespace selvage::formats::txt {
 
@@ -147,7 +148,7 @@ constexpr long long most_shafts_checked = 100;
 // A weave's statements, and the places of those that only the whole block can validate: of its draft, which
 // is required or forbidden, and of its state, which conflicts with other statements.
 struct WeaveBlock : Weave {
-  std::optional<Spot> draft_place, state_place, levels_place;
+  std::optional<Spot> draft_place, state_place, levels_place, fraction_place;
   std::vector<Spot> stacked_warps;
 };
 
@@ -265,6 +266,15 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
     draft.file = read_file_name(p, "the draft's file");
   } else if (*form == Draft::Form::leno) {
     if (p.more()) draft.full_turns = p.choice("kind of leno", leno_words).value_or(false);
+  } else if (draft.has_pile()) {
+    draft.a = 6;
+    if (p.more()) draft.a = p.count("the ends from wale to wale", 4).value_or(draft.a);
+    if (draft.a % 2 != 0)
+      p.error(
+          p.last(),
+          fmt::format("the ground of a {0} is plain, so that its wales repeat after an even number of ends: "
+                      "write '{0} {1}' or '{0} {2}'",
+                      word_of(draft_words, *form), draft.a - 1, draft.a + 1));
   } else if (*form != Draft::Form::plain) {
     read_draft_numbers(p, draft);
     return;
@@ -330,6 +340,32 @@ void read_crimp(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto share = p.number("the warp's share of the crimp");
   if (share && !(*share >= 0.0 && *share <= 1.0)) p.error(p.last(), "a share lies between 0 and 1");
   if (p.finish()) weave.crimp = *share;
+}
+
+void read_fraction(Parser& p, WeaveBlock& weave, std::string_view) {
+  weave.fraction_place = p.statement();
+  const auto fraction = p.number("the fibre fraction of the cloth");
+  if (fraction && !(*fraction > 0.0 && *fraction < mechanics::densest_packing))
+    p.error(p.last(), fmt::format("a fibre fraction of the cloth lies between 0 and {} (round fibres, packed "
+                                  "hexagonally)",
+                                  mechanics::densest_packing));
+  if (p.finish()) weave.fraction = *fraction;
+}
+
+// Reports what leaves nothing to be pressed.
+void check_fraction(Parser& p, const WeaveBlock& weave) {
+  if (!weave.fraction) return;
+  const auto report = [&](bool is, std::string_view word, std::string_view why) {
+    if (is)
+      p.error(*weave.fraction_place,
+              fmt::format("'fraction' and '{0}' exclude each other, {1}: leave out one of them", word, why));
+  };
+  report(weave.thickness.has_value(), "thickness", "since each says how far apart the plates are");
+  report(weave.profile.has_value(), "profile", "since only yarns whose path is free are pressed");
+  report(!weave.binders.empty(), "binder", "since only yarns that interlace are pressed");
+  report(weave.draft.form == Draft::Form::leno, "draft leno", "since a leno is not pressed");
+  report(weave.pucker.has_value(), "pucker", "since plates leave no waves");
+  report(weave.pile || weave.draft.has_pile(), "pile", "since plates leave no pile upright");
 }
 
 void read_binder(Parser& p, WeaveBlock& weave, std::string_view) {
@@ -406,6 +442,64 @@ void check_levels(Parser& p, const WeaveBlock& weave) {
     });
     p.error(spot == weave.stacked_warps.end() ? *weave.levels_place : *spot, made.error().text);
   }
+}
+
+// pile H [THREAD] [every N] [face | back | both] [cut]
+void read_warp_pile(Parser& p, WeaveBlock& weave, std::string_view) {
+  fabric::WarpPile pile;
+  pile.place = p.statement().place();
+  pile.picks = 0;
+  pile.height = p.positive("the height of the pile", Measure::length).value_or(1.0);
+  std::optional<fabric::WarpPile::Side> side;
+  while (p.more()) {
+    const std::string_view word = p.peek_word();
+    const bool is_side = std::any_of(pile_words.begin(), pile_words.end(),
+                                     [&](const auto& known) { return same_word(known.text, word); });
+    if (same_word(word, "cut") && !pile.is_cut)
+      pile.is_cut = p.expect("cut");
+    else if (same_word(word, "every") && pile.picks == 0 && p.expect("every"))
+      pile.picks = p.count("the picks from loop to loop", 3).value_or(3);
+    else if (is_side && !side)
+      side = p.choice("side of the pile", pile_words);
+    else if (pile.thread.empty())
+      pile.thread = p.reference(p.threads).value_or(std::string_view{});
+    else
+      break;
+  }
+  if (!p.finish()) return;
+  // Velvet has its pile on the face, a towel on both sides.
+  pile.side = side.value_or(pile.is_cut ? fabric::WarpPile::Side::face : fabric::WarpPile::Side::both);
+  weave.pile = std::move(pile);
+}
+
+// Three picks from loop to loop, as most terry has, or as many as the picks can be divided by.
+void check_pile(Parser& p, WeaveBlock& weave, const Spot& opened) {
+  if (!weave.pile && !weave.draft.has_pile()) return;
+  const std::string what =
+      weave.pile ? "a pile" : fmt::format("a {}", word_of(draft_words, weave.draft.form));
+  if (weave.profile || weave.pucker || weave.layers || weave.spacing || !weave.binders.empty() ||
+      weave.levels_place || weave.draft.form == Draft::Form::leno)
+    p.error(opened,
+            fmt::format("{} goes with one layer of interlaced yarns in equilibrium: leave out profile, "
+                        "spacing, pucker, layers, levels, binder, and a leno",
+                        what));
+  if (weave.pile && weave.draft.has_pile())
+    p.error(opened, fmt::format("{} has a pile of its picks: leave out 'pile', or use another draft", what));
+  const std::vector<std::string>& threads = weave.weft.threads;
+  if (weave.draft.has_pile() && std::all_of(threads.begin(), threads.end(), [&](const std::string& thread) {
+        return thread == threads.front();
+      }))
+    p.error(opened,
+            fmt::format("the picks of {} are ground and pile in turn, the pile of a thread of its own: write "
+                        "'weft {},2NAME ...' for one ground pick and two pile picks",
+                        what, threads.empty() ? "GROUND" : threads.front()));
+  if (!weave.pile || weave.pile->picks > 0) return;
+  weave.pile->picks = 3;
+  for (const int picks : {3, 4, 5})
+    if (weave.weft.count % picks == 0) {
+      weave.pile->picks = picks;
+      break;
+    }
 }
 
 // --- knit
@@ -776,9 +870,11 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"state", read_state},
                                         {"pucker", read_pucker},
                                         {"thickness", into(&Weave::thickness, a_length("the thickness"))},
+                                        {"fraction", read_fraction},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any},
-                                        {"levels", read_levels, Times::any}});
+                                        {"levels", read_levels, Times::any},
+                                        {"pile", read_warp_pile}});
   WeaveBlock weave;
   const Spot opened = p.statement();
   weave.place = opened.place();
@@ -813,7 +909,9 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(opened,
               "with a profile its formula makes the thickness: leave out the profile, or the thickness");
     check_state(p, weave);
+    check_fraction(p, weave);
     check_levels(p, weave);
+    check_pile(p, weave, opened);
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

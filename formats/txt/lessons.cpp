@@ -210,7 +210,7 @@ constexpr std::array lessons = {
     Lesson{
         "draft", "weave",
         "draft plain | twill A/B[/...] [Z | S] | satin N[/STEP] [weft-faced | warp-faced] | basket "
-        "ENDSxPICKS | "
+        "ENDSxPICKS | corduroy [ENDS] | velveteen [ENDS] | "
         "basket A/B | oxford | sateen N | drill | 5HS | leno "
         "[half | full] | file NAME",
         "Which yarn is on top; without a word a block of rows of 0 and 1 (1: warp on top) that `end` closes. "
@@ -234,6 +234,9 @@ constexpr std::array lessons = {
         "pucker tight 3 slack 6 ratio 1.08 every 12"},
     Lesson{"thickness", "weave", "thickness T", "Yarns are pressed until the cloth is no thicker than T.",
            "thickness 0.18", "length"},
+    Lesson{"fraction", "weave", "fraction F",
+           "Plates press the cloth, each of its layers alike, until fibres fill F of it; 0 < F < 0.907.",
+           "fraction 0.55", "", "as much as they fill by themselves"},
     Lesson{
         "layers", "weave", "layers N",
         "N cloths on each other; with `profile straight` N layers of warps, with `levels` N layers of wefts.",
@@ -246,6 +249,11 @@ constexpr std::array lessons = {
     Lesson{"binder", "weave", "binder THREAD every K [first G] levels L ...",
            "Binders in every K-th gap between warps, with L layers of weft below them at weft 1, 2, ...",
            "binder z every 2 levels 3 0"},
+    Lesson{
+        "pile", "weave", "pile H [THREAD] [every N] [face | back | both] [cut]",
+        "An end of pile beside each end of the warp, in terry loops that stand H out of the ground every N "
+        "picks; cut: a velvet.",
+        "pile 3", "length", "3 picks, both sides; of a cut pile the face"},
 
     // --- knit
     Lesson{"thread", "knit", "thread THREADS", "The threads that the rows of the chart take in turn.",

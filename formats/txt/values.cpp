@@ -95,6 +95,14 @@ constexpr std::array values = {
           "The pitch is meant, although it is more than 20 times the yarn's width."},
     Value{"leno", "draft",
           "`leno [half | full]`: doup ends cross the standing ends beside them between picks."},
+    Value{
+        "corduroy", "draft",
+        "`corduroy [ENDS]`: plain ground; picks of other threads than the first of the weft are pile, bound "
+        "under two ends in turn every ENDS ends, their floats cut."},
+    Value{"velveteen", "draft", "`velveteen [ENDS]`: as corduroy, bound under every other end in turn."},
+    Value{"face", "pile", "On the face."},
+    Value{"back", "pile", "On the back."},
+    Value{"both", "pile", "On face and back, of ends in turn."},
     Value{"half", "draft", "Of a leno: to the other side and back."},
     Value{"full", "draft", "Of a leno: all round the standing end."},
     Value{"file", "draft use", "`file NAME`: what another file says, in the text's folder or below it."},
@@ -113,7 +121,7 @@ constexpr std::array values = {
     Value{"tight", "pucker", "`tight T`: so many warps of a flat stripe."},
     Value{"slack", "pucker", "`slack S`: so many warps of a stripe that stands out."},
     Value{"ratio", "pucker", "`ratio R`: length of slack warps by that of tight ones."},
-    Value{"every", "pucker binder weft", "`every N`: from one to the next."},
+    Value{"every", "pucker binder weft pile", "`every N`: from one to the next."},
     Value{"first", "binder weft", "`first G`: where it begins, from 1."},
     Value{"levels", "binder", "How many layers of weft lie below the binder, weft by weft."},
 
@@ -129,7 +137,7 @@ constexpr std::array values = {
     Value{"jacquard", "knit", "The chart says which of the threads knits."},
     Value{"opposite", "gating", "Needles of both beds stand opposite each other."},
     Value{"published", "shape", "The loop of nine points as published."},
-    Value{"cut", "pile", "Without the tops of the terry loops: one tuft a stitch."},
+    Value{"cut", "pile", "Without the tops of the loops: of a knit a tuft a stitch, of a weave a velvet."},
     Value{"K", "chart points", "A face loop."},
     Value{"P", "chart points", "A back loop."},
     Value{"T", "chart points", "A tuck."},

@@ -54,12 +54,18 @@ inline constexpr std::array<Word<yarn::PathForm>, 7> path_words{{{"chord", yarn:
 // Behind a row of a path.
 inline constexpr std::string_view fixed_word = "fixed";
 inline constexpr std::string_view outline_word = "outline";
-inline constexpr std::array<Word<Draft::Form>, 6> draft_words{{{"plain", Draft::Form::plain},
+inline constexpr std::array<Word<Draft::Form>, 8> draft_words{{{"plain", Draft::Form::plain},
                                                                {"twill", Draft::Form::twill},
                                                                {"satin", Draft::Form::satin},
                                                                {"basket", Draft::Form::basket},
                                                                {"leno", Draft::Form::leno},
+                                                               {"corduroy", Draft::Form::corduroy},
+                                                               {"velveteen", Draft::Form::velveteen},
                                                                {"file", Draft::Form::file}}};
+inline constexpr std::array<Word<fabric::WarpPile::Side>, 3> pile_words{
+    {{"face", fabric::WarpPile::Side::face},
+     {"back", fabric::WarpPile::Side::back},
+     {"both", fabric::WarpPile::Side::both}}};
 inline constexpr std::array<Word<bool>, 2> leno_words{{{"half", false}, {"full", true}}};
 inline constexpr std::array<Word<bool>, 2> face_words{{{"warp-faced", true}, {"weft-faced", false}}};
 inline constexpr std::array<Word<Weave::Spacing>, 2> spacing_words{
@@ -152,9 +158,9 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
 }
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
-              says_all(spacing_words) && says_all(state_words) && says_all(knit_method_words) &&
-              says_all(gating_words) && says_all(knit_shape_words) && says_all(stitch_words) &&
-              says_all(end_words) && says_all(edit_words) && says_all(move_words) &&
+              says_all(spacing_words) && says_all(pile_words) && says_all(state_words) &&
+              says_all(knit_method_words) && says_all(gating_words) && says_all(knit_shape_words) &&
+              says_all(stitch_words) && says_all(end_words) && says_all(edit_words) && says_all(move_words) &&
               section_words.size() == std::variant_size_v<yarn::Section>);
 static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1) &&
               says_all(curve_method_words));

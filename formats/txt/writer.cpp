@@ -319,6 +319,8 @@ void write_draft(Lines& out, const fabric::Draft& draft) {
     out.word(word_of(leno_words, draft.full_turns));
   else if (draft.form == Draft::Form::satin && draft.b == 0)
     out.value(draft.a);
+  else if (draft.has_pile())
+    out.value(draft.a);
   else if (draft.form != Draft::Form::plain)
     write_pair(out, draft.a, "/", draft.b);
   for (const int count : draft.further) out.raw(fmt::format("/{}", count));
@@ -341,6 +343,7 @@ void write_item(Lines& out, const fabric::Weave& weave) {
     out.word("ratio").value(weave.pucker->ratio).word("every").value(weave.pucker->picks);
   }
   if (weave.thickness) out.line(1, "thickness").value(*weave.thickness);
+  if (weave.fraction) out.line(1, "fraction").value(*weave.fraction);
   if (weave.layers) out.line(1, "layers").value(*weave.layers);
   for (const fabric::Binder& binder : weave.binders) {
     out.line(1, "binder").name(binder.thread).word("every").value(binder.every);
@@ -355,6 +358,12 @@ void write_item(Lines& out, const fabric::Weave& weave) {
       if (!column[k].thread.empty()) out.name(column[k].thread);
       for (const int level : column[k].levels) out.value(level);
     }
+  }
+  if (weave.pile) {
+    out.line(1, "pile").value(weave.pile->height);
+    if (!weave.pile->thread.empty()) out.name(weave.pile->thread);
+    out.word("every").value(weave.pile->picks).word(word_of(pile_words, weave.pile->side));
+    if (weave.pile->is_cut) out.word("cut");
   }
   out.line(0, "end");
 }

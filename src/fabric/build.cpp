@@ -68,6 +68,7 @@ std::vector<std::string> threads_of(const Item& item) {
                           for (const WarpColumn& column : weave.columns)
                             for (const StackedWarp& warp : column)
                               if (!warp.thread.empty()) names.push_back(warp.thread);
+                          if (weave.pile && !weave.pile->thread.empty()) names.push_back(weave.pile->thread);
                           return names;
                         },
                         [](const Knit& knit) {

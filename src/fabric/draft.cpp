@@ -217,6 +217,9 @@ Result<Drawdown> drawdown_of(const Draft& draft) {
       return filled(a + b, a + b, [&](long long pick, long long end) { return (pick < a) == (end < a); });
     case Draft::Form::leno:  // standing ends under every pick, doup ends over it
       return filled(1, 2, [](long long, long long end) { return end == 1; });
+    case Draft::Form::corduroy:  // those of its picks that are pile decide (weave_pile.cpp)
+    case Draft::Form::velveteen:
+      return error(Kind::unsupported, "the draft has pile, which its picks decide");
     case Draft::Form::file:
       break;
   }

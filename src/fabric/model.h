@@ -254,19 +254,34 @@ struct WeaveSystem {
   double pitch = 0;
   std::optional<double> counted_on{};  // mm: the text counts yarns on a length, an inch or 10 mm
   bool is_drawn = false;               // a drawing's: its threads are as thick as looks well
+  int ends_of_one = 1;  // with warp pile 2: an end of ground and one of pile for each of the text
 };
 
 struct Draft {
-  enum class Form { rows, plain, twill, satin, basket, leno, file };
+  enum class Form { rows, plain, twill, satin, basket, leno, corduroy, velveteen, file };
   Form form = Form::plain;
   TextPlace place;
   std::vector<std::string> rows;  // of '0' and '1', top row = weft 1
-  int a = 0, b = 0;               // twill a/b/..., satin a/b (0: the trade's step), basket a/b
+  int a = 0, b = 0;               // twill a/b/..., satin a/b (0: the trade's step), basket a/b; corduroy,
+                                  // velveteen: a ends to a repeat
   std::vector<int> further;       // of a twill: over, under, ... behind the first two
   Hand hand = Hand::z;            // of a twill: which way its diagonal rises
   bool warp_faced = false;        // satin
   bool full_turns = false;        // leno: the doup ends go all round their standing ends
   std::string file;
+  // Pile picks among its picks, whose floats are cut.
+  [[nodiscard]] bool has_pile() const { return form == Form::corduroy || form == Form::velveteen; }
+};
+
+// Warp pile: an end of pile beside each end of the warp.
+struct WarpPile {
+  enum class Side { face, back, both };  // both: of ends in turn
+  TextPlace place;
+  double height = 0;   // over the ground, file units
+  std::string thread;  // empty: the first one of the warp
+  int picks = 3;       // from loop to loop
+  Side side = Side::both;
+  bool is_cut = false;
 };
 
 // A yarn of a weave with straight yarns that runs along the warp, in gaps between warps, and through the
@@ -305,6 +320,7 @@ struct Weave {
   std::optional<double> amplitude;  // sine: of both systems, file units
   std::optional<double> crimp;      // the warp's share of the crimp height, 0 .. 1
   std::optional<double> thickness;  // of the cloth (of a layer), at most; file units
+  std::optional<double> fraction;   // of fibre over the whole cloth, between plates that press it to it
   enum class Spacing { even, relaxed };
   std::optional<Spacing> spacing;
   // Equilibrium of the cloth under the tensions of its two systems. loom: those of weaving, wefts nearly
@@ -316,6 +332,7 @@ struct Weave {
   std::optional<int> layers;
   std::vector<Binder> binders;
   std::vector<WarpColumn> columns;  // used in turn, in the place of a draft: layers are those of weft
+  std::optional<WarpPile> pile;
 };
 
 // A user's own loop, as data points from its beginning to its end. Weft knits: x in wales from the left side

@@ -33,6 +33,13 @@ struct YarnPlan {
   std::vector<Message> messages;  // warnings made while planning; they become the body's
 };
 
+// Of a weave with pile, mm.
+struct PileReport {
+  double height = 0;  // out of the ground; of cut weft pile the largest
+  double ground = 0;  // thickness of the cloth without it
+  std::optional<double> wales_per_mm;
+};
+
 // The yarns of one fabric by construction, known by number and name before any of them is computed, and
 // planned one at a time: nothing is kept, so that a cloth of a million loops needs the memory of one yarn.
 // Exactly periodic: yarn i + repeat has the plan of yarn i at another place, n * pitch away.
@@ -59,6 +66,7 @@ class Construction {
   [[nodiscard]] virtual bool has_whole_yarns() const { return false; }
   // Of a cloth in equilibrium.
   [[nodiscard]] virtual std::optional<EquilibriumReport> equilibrium() const { return std::nullopt; }
+  [[nodiscard]] virtual std::optional<PileReport> pile() const { return std::nullopt; }
 };
 
 // The same plan, told from the origin.

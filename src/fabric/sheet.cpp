@@ -238,7 +238,7 @@ constexpr double inch = 25.4;
 
 // Seen from above.
 bool runs_in_lanes(const Weave& weave) {
-  return weave.draft.form != Draft::Form::leno;
+  return weave.draft.form != Draft::Form::leno && !weave.draft.has_pile() && !weave.pile;
 }
 
 // Sums over the yarns of a repeat.
@@ -313,7 +313,10 @@ Stretch Measuring::stretch_of(const yarn::Body& body, int axis, double at) const
   // Beside a crossing or the middle of a loop, where places tie.
   const double beside = is_braid() ? 0.0 : 0.137 * unit_[axis];
   const double from = sample_.low[axis] + beside - at;
-  if (const auto piece = piece_of(body, axis, from, from + sample_.size[axis])) return *piece;
+  const double begin = nurbs::evaluate(body.axis, body.axis.first_parameter())[axis],
+               end = nurbs::evaluate(body.axis, body.axis.last_parameter())[axis];
+  if (is_braid() || std::min(begin, end) <= from)
+    if (const auto piece = piece_of(body, axis, from, from + sample_.size[axis])) return *piece;
   Stretch whole;
   whole.length = body.length;
   whole.volume = body.volume;
@@ -554,6 +557,7 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
   sheet.place = place_of(item);
   sheet.file = fabric.file;
   sheet.equilibrium = cloth.equilibrium();
+  sheet.pile = cloth.pile();
   return sheet;
 }
 

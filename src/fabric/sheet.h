@@ -79,6 +79,7 @@ struct Sheet {
   std::vector<SystemSheet> systems;                    // in the order of their first yarns
   std::vector<ThreadSheet> threads;
   std::optional<EquilibriumReport> equilibrium;
+  std::optional<PileReport> pile;
   [[nodiscard]] std::optional<double> porosity() const {
     return fibre_fraction > 0 ? std::optional(1 - fibre_fraction) : std::nullopt;
   }

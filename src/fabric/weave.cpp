@@ -60,8 +60,8 @@ Reach reach_over(const System& crossed, bool has_cell, double low, double high) 
   return {static_cast<double>(-before) * pitch, static_cast<double>(last + 1) * pitch, -before, last};
 }
 
-// The numbers of a row's yarns: those of the text, and in a cell that is periodic across them those beyond
-// the cloth's edges, too, that reach into it.
+}  // namespace
+
 std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, double low, double high) {
   if (!is_periodic) return {0, row.count};
   constexpr double most = 1e9;  // past what any limit lets through
@@ -72,8 +72,6 @@ std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, dou
           std::max(row.count, -number(2.0 * row.first - high - 0.5 * row.width))};
 }
 
-}  // namespace
-
 WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, const BuildOptions& options,
                                      System warp, System weft)
     : fabric_(fabric),
@@ -82,10 +80,11 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
       warp_(std::move(warp)),
       weft_(std::move(weft)),
       has_only_formula_(
-          !weave.state && !is_stacked() &&
+          !weave.state && !weave.fraction && !is_stacked() && !has_pile() &&
           (options.as_published || weave.profile || weave.amplitude || any_section(is_polygon))),
-      has_formula_(!weave.state && !is_stacked() &&
-                   (has_only_formula_ || weave.pucker || any_section(has_form))) {
+      has_formula_(!weave.state && !weave.fraction && !is_stacked() && !has_pile() &&
+                   (has_only_formula_ || weave.pucker || any_section(has_form))),
+      options_(options) {
   const bool has_cell = fabric.cell.has_value();
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
@@ -179,8 +178,9 @@ bool WeaveConstruction::is_over_dense(const System& warp, const System& weft) {
 }
 
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
-  Result<Drawdown> drawdown =
-      is_stacked() ? drawdown_of(weave_.columns, layers()) : drawdown_of(weave_.draft);
+  Result<Drawdown> drawdown = has_pile()     ? pile_drawdown()
+                              : is_stacked() ? drawdown_of(weave_.columns, layers())
+                                             : drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(is_stacked() ? drawdown.error().place : weave_.draft.place);
   drawdown_ = std::move(*drawdown);
   Diagnostics own;
@@ -188,6 +188,7 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   if (!made && is_jammed_ && warp_.text->is_drawn) made = fit_drawing(own);
   if (!made) return is_jammed_ ? jammed(made.error()) : made;
   for (const Message& message : own.messages()) diagnostics.add(message);
+  if (has_pile()) return prepare_pile(diagnostics);
   for (int layer = 0; layer < layers(); ++layer) {
     if (layer == 0 || !is_stacked()) add_block(Block::Kind::warp, layer, 0, row_of(warp_));
     add_block(Block::Kind::weft, layer, 0, row_of(weft_));
@@ -236,10 +237,12 @@ Status WeaveConstruction::prepare_heights(Diagnostics& diagnostics) {
     Status found = prepare_equilibrium(diagnostics);
     if (found || found.error().kind != Kind::limit) return found;
     const std::string text = fmt::format("no equilibrium of the cloth is looked for: {}", found.error().text);
-    if (weave_.state || is_stacked())
+    if (has_pile()) return error(Kind::limit, text + ", which a pile needs").placed(weave_.place);
+    if (weave_.state || weave_.fraction || is_stacked())
       return error(Kind::limit,
-                   text + (is_stacked() ? "; a shorter repeat has fewer"
-                                        : "; without 'state' a formula gives heights and sections"))
+                   text + (is_stacked()      ? "; a shorter repeat has fewer"
+                           : weave_.fraction ? "; leave out 'fraction', or shorten the repeat"
+                                             : "; without 'state' a formula gives heights and sections"))
           .placed(weave_.place);
     has_formula_ = has_only_formula_ = true;
     space_evenly(weft_);
@@ -305,32 +308,36 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
   return {};
 }
 
-// Of a cloth whose thickness is too small: the least one, to three digits, whatever has been asked for. None:
-// it is jammed at any.
-std::optional<double> WeaveConstruction::least_thickness() const {
+// Of a cloth that is pressed too far: the thinnest one, to half a percent, whatever has been asked for. None:
+// it is jammed at any thickness.
+std::optional<ClothInEquilibrium> WeaveConstruction::thinnest() const {
   constexpr double step = 0.995;
-  if (!weave_.thickness) return std::nullopt;
+  if (!weave_.thickness && !weave_.fraction) return std::nullopt;
   Weave weave = weave_;
+  weave.fraction.reset();
   const auto find_at = [&](const std::optional<double>& thickness) {
     weave.thickness = thickness;
     return ClothInEquilibrium::find({&fabric_, &weave, &warp_, &weft_, &drawdown_, clearance_});
   };
-  const auto free = find_at(std::nullopt);
-  if (!free) return std::nullopt;
+  Result<ClothInEquilibrium> made = find_at(std::nullopt);
+  if (!made) return std::nullopt;
   // By steps from the thickness that it has by itself: the first has been had, the last not.
-  const auto after = [&](int steps) { return free->thickness() * std::pow(step, steps); };
-  int had = 0,
-      missed = static_cast<int>(std::ceil(std::log(*weave_.thickness / free->thickness()) / std::log(step)));
+  const double free = made->thickness(),
+               asked = weave_.thickness ? *weave_.thickness : made->thickness_for(*weave_.fraction);
+  int had = 0, missed = static_cast<int>(std::ceil(std::log(asked / free) / std::log(step)));
   while (missed - had > 1) {
     const int middle = (had + missed) / 2;
-    (find_at(rounded_up(after(middle))) ? had : missed) = middle;
+    Result<ClothInEquilibrium> pressed = find_at(rounded_up(free * std::pow(step, middle)));
+    (pressed ? had : missed) = middle;
+    if (pressed) made = std::move(pressed);
   }
-  return rounded_up(after(had));
+  return std::move(*made);
 }
 
 // With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and
 // yarns.
 Message WeaveConstruction::jammed(const Message& failure) const {
+  if (!seeks_remedies_) return failure;
   const LooseCloth cloth{warp_, weft_, fabric_.units};
   if (has_formula_)
     return error(failure.kind, fmt::format("the cloth is jammed: {}; {}", failure.text,
@@ -342,11 +349,18 @@ Message WeaveConstruction::jammed(const Message& failure) const {
                                                                  !is_over_dense(changed.warp, changed.weft);
                                                         })))
         .placed(failure.place);
-  if (const std::optional<double> least = least_thickness())
+  if (const std::optional<ClothInEquilibrium> least = thinnest())
     return error(Kind::geometry,
-                 fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
-                             "{:.6g} {} at the least",
-                             *weave_.thickness, name_of(fabric_.units), *least, name_of(fabric_.units)))
+                 weave_.fraction
+                     ? fmt::format(
+                           "these yarns do not fill {:.4g} of the cloth with fibre: {:.4g} at most, where "
+                           "they are pressed to packing fractions of {:.2f} (warp) and {:.2f} (weft)",
+                           *weave_.fraction, rounded_down(least->fraction()),
+                           least->report().systems.front().packing, least->report().systems.back().packing)
+                     : fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
+                                   "{:.6g} {} at the least",
+                                   *weave_.thickness, name_of(fabric_.units), rounded_up(least->thickness()),
+                                   name_of(fabric_.units)))
         .placed(weave_.place);
   return error(Kind::geometry,
                fmt::format("the cloth is jammed: {}; {}", failure.text,
@@ -436,6 +450,10 @@ Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
 }
 
 WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
+  if (has_pile()) {
+    static constexpr std::array<Block, 2> of_kind = {Block{Block::Kind::warp}, Block{Block::Kind::weft}};
+    return {&of_kind[pile_yarns_[index].kind == Block::Kind::weft ? 1 : 0], pile_yarns_[index].yarn, 0};
+  }
   const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), index,
                                       [](std::size_t i, const Block& block) { return i < block.first; });
   const Block& block = *std::prev(after);
@@ -447,12 +465,14 @@ WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
 }
 
 std::string WeaveConstruction::system(std::size_t index) const {
+  if (has_pile() && pile_yarns_[index].is_pile) return "pile";
   const Block::Kind kind = place_of(index).block->kind;
   if (kind == Block::Kind::binder) return "binder";
   return kind == Block::Kind::warp ? "warp" : "weft";
 }
 
 std::string WeaveConstruction::name(std::size_t index) const {
+  if (has_pile()) return pile_name(pile_yarns_[index]);
   const auto [block, yarn, stacked] = place_of(index);
   if (block->kind == Block::Kind::binder) {
     // Line by line, and then those beyond the cloth's edges.
@@ -580,6 +600,10 @@ Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
     return plan;
   }
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
+  if (has_pile() && pile_yarns_[index].is_pile) {
+    if (Status made = plan_pile(*plan, pile_yarns_[index]); !made) return made.error();
+    return plan;
+  }
   if (equilibrium_) {
     equilibrium_->shape(*plan, {is_weft, yarn, stacked}, reach.from, reach.to, to_place);
     return plan;
@@ -611,22 +635,36 @@ Repeat WeaveConstruction::repeat() const {
   }
   if (wefts > longest_repeat || warps > longest_repeat) return {};
   wefts = std::lcm(wefts, weft_.repeat_of_threads());
-  warps = std::lcm(warps, warp_.repeat_of_threads());
+  warps =
+      std::lcm(warps, std::lcm(warp_.repeat_of_threads(), static_cast<long long>(warp_.text->ends_of_one)));
   return {static_cast<double>(wefts) * weft_.text->pitch, static_cast<double>(warps) * warp_.text->pitch,
           std::nullopt};
 }
 
-Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
-                                                 const BuildOptions& options, Diagnostics& diagnostics) {
+Result<std::unique_ptr<WeaveConstruction>> WeaveConstruction::make(const Fabric& fabric, const Weave& weave,
+                                                                   const BuildOptions& options) {
   Result<System> warp = system_of(fabric, weave.warp);
   if (!warp) return warp.error();
   Result<System> weft = system_of(fabric, weave.weft);
   if (!weft) return weft.error();
+  if (weave.pile) {
+    const std::string& name = weave.pile->thread;
+    Result<WovenThread> pile =
+        woven_thread(fabric, name.empty() ? weave.warp.threads.front() : name, weave.pile->place);
+    if (!pile) return pile.error();
+    *warp = with_pile_ends(std::move(*warp), std::move(*pile));
+  }
   if (!weave.columns.empty())
     if (Status stacked = stack_columns(*warp, fabric, weave.columns); !stacked) return stacked.error();
-  auto made = std::make_unique<WeaveConstruction>(fabric, weave, options, std::move(*warp), std::move(*weft));
-  if (Status prepared = made->prepare(diagnostics); !prepared) return prepared.error();
-  return std::unique_ptr<Construction>(std::move(made));
+  return std::make_unique<WeaveConstruction>(fabric, weave, options, std::move(*warp), std::move(*weft));
+}
+
+Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
+                                                 const BuildOptions& options, Diagnostics& diagnostics) {
+  Result<std::unique_ptr<WeaveConstruction>> made = WeaveConstruction::make(fabric, weave, options);
+  if (!made) return made.error();
+  if (Status prepared = (*made)->prepare(diagnostics); !prepared) return prepared.error();
+  return std::unique_ptr<Construction>(std::move(*made));
 }
 
 }  // namespace selvage::fabric

@@ -37,6 +37,17 @@ struct Block {
   std::size_t in_cloth = 0;  // of them, those that the text counts: 0, 1, ...
 };
 
+// One yarn of a weave with pile: of the ground, an end of pile, or a tuft of one.
+struct PileYarn {
+  Block::Kind kind = Block::Kind::warp;  // of the system that it is of
+  long long yarn = 0;                    // of that system
+  bool is_pile = false;
+  long long first = 0, last = 0;  // of pile: the crossings from the first to the last that bind it
+  int number = 0;                 // of a tuft, from 1 in the cloth
+  bool is_tuft = false;
+  bool ends_at_foot = false;  // an end of pile whose `last` has but the foot of its last loop
+};
+
 // Yarns side by side: how many the text counts, where they lie, and how wide they are.
 struct Row {
   long long count = 0;
@@ -55,23 +66,29 @@ class WeaveConstruction final : public Construction {
  public:
   WeaveConstruction(const Fabric& fabric, const Weave& weave, const BuildOptions& options, System warp,
                     System weft);
+  // Errors: of its threads.
+  static Result<std::unique_ptr<WeaveConstruction>> make(const Fabric& fabric, const Weave& weave,
+                                                         const BuildOptions& options);
 
   // Everything that can go wrong, before any yarn is planned.
   Status prepare(Diagnostics& diagnostics);
 
-  [[nodiscard]] std::size_t count() const override { return blocks_.back().first + blocks_.back().count; }
+  [[nodiscard]] std::size_t count() const override {
+    return has_pile() ? pile_yarns_.size() : blocks_.back().first + blocks_.back().count;
+  }
   [[nodiscard]] std::string name(std::size_t index) const override;
   [[nodiscard]] const Thread& thread(std::size_t index) const override;
   [[nodiscard]] std::uint64_t data_points() const override { return data_points_; }
   [[nodiscard]] std::uint64_t longest() const override { return std::max(points_of(false), points_of(true)); }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
   [[nodiscard]] Repeat repeat() const override;
-  [[nodiscard]] Vec2 unit() const override { return {weft_.text->pitch, warp_.text->pitch}; }
+  [[nodiscard]] Vec2 unit() const override { return {weave_.weft.pitch, weave_.warp.pitch}; }
   [[nodiscard]] std::string system(std::size_t index) const override;
   [[nodiscard]] bool has_whole_yarns() const override { return equilibrium_.has_value(); }
   [[nodiscard]] std::optional<EquilibriumReport> equilibrium() const override {
     return equilibrium_ ? std::optional(equilibrium_->report()) : std::nullopt;
   }
+  [[nodiscard]] std::optional<PileReport> pile() const override;
 
  private:
   struct Place {
@@ -108,7 +125,29 @@ class WeaveConstruction final : public Construction {
   Status fit_drawing(Diagnostics& diagnostics);
   Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
-  [[nodiscard]] std::optional<double> least_thickness() const;
+  [[nodiscard]] std::optional<ClothInEquilibrium> thinnest() const;
+  // Of pile (weave_pile.cpp).
+  struct Leg;
+  struct BoundPart;
+  [[nodiscard]] bool has_pile() const { return weave_.pile || weave_.draft.has_pile(); }
+  [[nodiscard]] bool is_pile(bool is_weft, long long yarn) const;
+  // The following: of a yarn of pile.
+  [[nodiscard]] bool pile_is_up(long long yarn) const;
+  [[nodiscard]] bool is_bound(long long yarn, long long crossing) const;
+  [[nodiscard]] std::optional<long long> bound_from(long long yarn, long long crossing) const;
+  [[nodiscard]] BoundPart bound_part(long long yarn, long long first, long long last) const;
+  [[nodiscard]] std::optional<std::vector<Vec2>> free_part(const BoundPart& part, int side, bool is_up,
+                                                           double height) const;
+  static System with_pile_ends(System ground, WovenThread pile);
+  [[nodiscard]] Result<Drawdown> pile_drawdown() const;
+  [[nodiscard]] std::array<long long, 2> pile_repeat() const;  // ends, picks
+  [[nodiscard]] bool pile_fits(double height);
+  void measure_ground();
+  [[nodiscard]] std::optional<double> pitch_for_pile() const;
+  [[nodiscard]] Message refused_pile();
+  Status prepare_pile(Diagnostics& diagnostics);
+  [[nodiscard]] std::string pile_name(const PileYarn& yarn) const;
+  Status plan_pile(YarnPlan& plan, const PileYarn& pile) const;
   Status prepare_leno();
   Status prepare_pucker(Diagnostics& diagnostics);
   Status pucker(YarnPlan& plan) const;
@@ -169,6 +208,14 @@ class WeaveConstruction final : public Construction {
   double layer_pitch_ = 0;
   std::vector<Block> blocks_;
   std::uint64_t data_points_ = 0;
+  BuildOptions options_;
+  std::vector<PileYarn> pile_yarns_;
+  double pile_height_ = 0, ground_top_ = 0, ground_bottom_ = 0;
+  bool seeks_remedies_ = true;
 };
+
+// The numbers of a row's yarns: those of the text, and in a cell that is periodic across them those beyond
+// the cloth's edges, too, that reach into it.
+std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, double low, double high);
 
 }  // namespace selvage::fabric

@@ -1,6 +1,7 @@
 // One of a weave's two systems, warp or weft: its threads with their sections, and where its yarns are.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -17,6 +18,7 @@ struct WovenThread {
 
 struct System {
   const WeaveSystem* text = nullptr;
+  std::shared_ptr<const WeaveSystem> own_text{};  // what `text` is where the fabric does not have it
   std::vector<WovenThread> threads;  // used in turn, as the text lists them; and all that columns have
   // Of warps above each other: those of each column, from the lowest; used in turn. Empty: one of `threads`.
   std::vector<std::vector<WovenThread>> columns;

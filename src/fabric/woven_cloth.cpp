@@ -139,7 +139,26 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
   if (!cloth) return cloth.error();
   Result<mechanics::WovenEquilibrium> equilibrium = mechanics::find_equilibrium(*cloth);
   if (!equilibrium) return equilibrium.error().placed(text.weave->place);
-  return ClothInEquilibrium(text, std::move(*cloth), std::move(*equilibrium));
+  ClothInEquilibrium made(text, *cloth, std::move(*equilibrium));
+  if (!text.weave->fraction) return made;
+  // The length of yarns depends on the thickness, but little.
+  constexpr double tolerance = 1e-7;
+  constexpr int most_rounds = 30;
+  const double fraction = *text.weave->fraction;
+  if (made.fraction() > fraction)
+    return error(Kind::malformed,
+                 fmt::format("the cloth has a fibre fraction of {:.4g} by itself: leave out 'fraction {:g}', "
+                             "or open the cloth",
+                             made.fraction(), fraction))
+        .placed(text.weave->place);
+  for (int round = 0; round < most_rounds && std::abs(made.fraction() / fraction - 1.0) > tolerance;
+       ++round) {
+    cloth->thickness = made.thickness_for(fraction);
+    equilibrium = mechanics::find_equilibrium(*cloth);
+    if (!equilibrium) return equilibrium.error().placed(text.weave->place);
+    made = ClothInEquilibrium(text, *cloth, std::move(*equilibrium));
+  }
+  return made;
 }
 
 ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth,
@@ -148,6 +167,7 @@ ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCl
       weft_(*text.weft),
       state_(state_of(*text.weave)),
       millimetres_(millimetres_per(text.fabric->units)),
+      layers_(text.layers()),
       cloth_(std::move(cloth)),
       equilibrium_(std::move(equilibrium)) {
   bottom_ = std::numeric_limits<double>::infinity();
@@ -211,6 +231,11 @@ double ClothInEquilibrium::height(const ClothYarn& yarn, long long crossing) con
          0.5 * (top_ + bottom_);
 }
 
+yarn::SectionSize ClothInEquilibrium::size(const ClothYarn& yarn, long long crossing) const {
+  const auto size = equilibrium_.size(system_of(yarn.is_weft), number(yarn), static_cast<double>(crossing));
+  return {size.width, size.height};
+}
+
 void ClothInEquilibrium::shape(YarnPlan& plan, const ClothYarn& yarn, double from, double to,
                                Vec3 (*to_place)(double s, double z, double across)) const {
   const bool is_weft = yarn.is_weft;
@@ -243,6 +268,28 @@ void ClothInEquilibrium::shape(YarnPlan& plan, const ClothYarn& yarn, double fro
   const yarn::SectionSize size = plan.spec.sizes.front().size;
   plan.spec.section = plan.thread.section.emplace(yarn::Ellipse{size.width, size.height});
   plan.thread.packing = packing(yarn);
+}
+
+double ClothInEquilibrium::fibre_volume() const {
+  const auto sum = [](const std::vector<double>& gaps) {
+    return std::accumulate(gaps.begin(), gaps.end(), 0.0);
+  };
+  double height = 0.0;
+  for (const bool is_weft : {false, true}) {
+    double areas = 0.0;
+    for (const mechanics::WovenYarn& yarn : is_weft ? cloth_.wefts : cloth_.warps) areas += yarn.fibre_area;
+    height += areas * (1.0 + equilibrium_.crimp(system_of(is_weft))) /
+              sum(is_weft ? cloth_.weft_gaps : cloth_.warp_gaps);
+  }
+  return height;
+}
+
+double ClothInEquilibrium::fraction() const {
+  return fibre_volume() * layers_ / (layers_ * thickness() + (layers_ - 1) * cloth_.clearance);
+}
+
+double ClothInEquilibrium::thickness_for(double fraction) const {
+  return fibre_volume() / fraction - cloth_.clearance * (layers_ - 1) / layers_;
 }
 
 double ClothInEquilibrium::packing(const ClothYarn& yarn) const {

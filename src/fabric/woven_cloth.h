@@ -21,6 +21,7 @@ struct ClothText {
   const Drawdown* drawdown = nullptr;
   double clearance = 0;
   double yarns = 1;  // diameters over those of the text
+  [[nodiscard]] int layers() const { return drawdown->first_ends.empty() ? weave->layers.value_or(1) : 1; }
 };
 
 // Errors: of twist_factor_of, at the thread (geometry); a repeat of too many crossings (limit).
@@ -36,16 +37,22 @@ struct ClothYarn {
 
 class ClothInEquilibrium {
  public:
-  // Errors: of woven_cloth; of find_equilibrium, at the weave.
+  // Errors: of woven_cloth; of find_equilibrium, at the weave; a fraction that the cloth exceeds by itself
+  // (malformed).
   static Result<ClothInEquilibrium> find(const ClothText& text);
 
   // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with
   // its section and its sizes.
   void shape(YarnPlan& plan, const ClothYarn& yarn, double from, double to,
              Vec3 (*to_place)(double s, double z, double across)) const;
+  [[nodiscard]] yarn::SectionSize size(const ClothYarn& yarn, long long crossing) const;
   // Height of a yarn's axis at a crossing.
   [[nodiscard]] double height(const ClothYarn& yarn, long long crossing) const;
   [[nodiscard]] double thickness() const { return top_ - bottom_; }
+  // Of fibre over the whole cloth, its layers a clearance apart.
+  [[nodiscard]] double fraction() const;
+  // Of a layer that has this fraction, with yarns as long as they are.
+  [[nodiscard]] double thickness_for(double fraction) const;
   [[nodiscard]] double max_width(bool is_weft) const { return max_width_[is_weft ? 1 : 0]; }
   [[nodiscard]] double max_height(bool is_weft) const { return max_height_[is_weft ? 1 : 0]; }
   [[nodiscard]] EquilibriumReport report() const;
@@ -59,12 +66,14 @@ class ClothInEquilibrium {
   [[nodiscard]] double control_height(const ClothYarn& yarn, long long index) const;
   [[nodiscard]] nurbs::Curve unclamped(const ClothYarn& yarn, long long first, long long last) const;
   [[nodiscard]] int number(const ClothYarn& yarn) const;  // in cloth_
+  [[nodiscard]] double fibre_volume() const;              // of a layer, over its area
   [[nodiscard]] std::vector<ClothYarn> yarns(bool is_weft) const;
   [[nodiscard]] int crossings(bool is_weft) const { return is_weft ? cloth_.columns() : cloth_.rows(); }
 
   System warp_, weft_;
   Weave::State state_;
   double millimetres_;
+  int layers_;
   mechanics::WovenCloth cloth_;
   mechanics::WovenEquilibrium equilibrium_;
   double top_ = 0, bottom_ = 0;

@@ -96,6 +96,11 @@ Json sheet_json(const fabric::Sheet& sheet) {
   put("courses_per_cm", sheet.courses_per_mm, per_cm);
   put("wales_per_cm", sheet.wales_per_mm, per_cm);
   put("braid_angle", sheet.braid_angle);
+  if (sheet.pile) {
+    put("pile_height", sheet.pile->height);
+    put("ground_thickness", sheet.pile->ground);
+    put("wales_per_cm", sheet.pile->wales_per_mm, per_cm);
+  }
   put("repeat_x", sheet.repeat_x);
   put("repeat_y", known(sheet.repeat_y));
   for (const fabric::SystemSheet& system : sheet.systems)
@@ -189,6 +194,11 @@ std::string sheet_text(const fabric::Sheet& sheet, std::string_view file) {
   text += line("mass", with(known(sheet.mass), "g/m2"));
   if (sheet.linear_mass > 0) text += line("", with(sheet.linear_mass, "g/m"));
   text += line("thickness", with(sheet.thickness, "mm"));
+  if (sheet.pile) {
+    text += line("without the pile", with(sheet.pile->ground, "mm"));
+    text += line("pile height", with(sheet.pile->height, "mm"));
+    if (sheet.pile->wales_per_mm) text += line("wales", with(per_cm * *sheet.pile->wales_per_mm, "per cm"));
+  }
   if (sheet.braid_angle) text += line("braid angle", with(sheet.braid_angle, "degrees"));
   if (sheet.courses_per_mm)
     text += line("courses x wales", fmt::format("{:.4g} x {:.4g} per cm", per_cm * *sheet.courses_per_mm,

@@ -43,7 +43,7 @@ CALLS = [
     "pthread_create",
     "dlopen",
 ]
-POINTS = 4  # of one call in one command, without --all
+POINTS = 2  # of one call in one command, without --all
 PATIENCE = 120  # seconds; a run takes less than one
 README = pathlib.Path(__file__).with_name("README.md")
 HEADINGS = {"all": "## All processes\n", "parent": "## The process that was started alone\n"}

@@ -37,6 +37,8 @@ bool warp_has_to_be_on_top(const Draft& draft, int warp, int weft) {
       return (i % period < draft.a) == (j % period < draft.a);
     case Draft::Form::leno:  // standing ends below, doup ends above
       return warp % 2 == 0;
+    case Draft::Form::corduroy:  // picks of pile decide
+    case Draft::Form::velveteen:
     case Draft::Form::file:
       break;
   }
