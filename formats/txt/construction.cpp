@@ -346,7 +346,7 @@ void read_fraction(Parser& p, WeaveBlock& weave, std::string_view) {
   weave.fraction_place = p.statement();
   const auto fraction = p.number("the fibre fraction of the cloth");
   if (fraction && !(*fraction > 0.0 && *fraction < mechanics::densest_packing))
-    p.error(p.last(), fmt::format("a fibre fraction of the cloth lies between 0 and {} (round fibres, packed "
+    p.error(p.last(), fmt::format("a fibre fraction of the cloth lies between 0 and {:.3f} (round fibres, packed "
                                   "hexagonally)",
                                   mechanics::densest_packing));
   if (p.finish()) weave.fraction = *fraction;

@@ -227,7 +227,7 @@ constexpr std::array lessons = {
     Lesson{"state", "weave", "state loom | relaxed | finished",
            "The cloth in equilibrium: loom under the tensions of weaving, relaxed under little tension, "
            "finished under equal tensions in both systems. See `selvage explain equilibrium`.",
-           "state finished", "", "none: paths and sections follow from the formula of the profile"},
+           "state finished", "", "finished; with a profile none: its formula gives paths and sections"},
     Lesson{
         "pucker", "weave", "pucker tight T slack S ratio R every N",
         "A seersucker: S slack warps after T tight ones, R times as long, in waves of N picks; 1 < R <= 2.",

@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
   fmt::print("{{\"rows\": [\n");
   const fabric::Fabric cloth = read(sample);
   fabric::BuildOptions options;  // as `selvage mesh` has them
-  options.gap = fabric::meshed_gap_share * fabric::smallest_section(cloth).value_or(0.0);
+  options.gap = fabric::meshed_gap(cloth);
   const std::vector<yarn::Body> bodies = benchmarks::built(cloth, options);
   bool is_first = true;
   for (std::size_t k = 0; k < sizes.size(); ++k)

@@ -17,6 +17,7 @@
 #include "fabric/plies.h"
 #include "fabric/quantities.h"
 #include "fabric/shape_memo.h"
+#include "fabric/weave_system.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/ends.h"
 #include "yarn/finish.h"
@@ -184,8 +185,15 @@ void note_whole(const Thread& thread, Detail detail, const Fabric& fabric, Diagn
 
 namespace {
 
-// Blocks that were looked into are not looked into again.
-void look_for_smallest(const Fabric& fabric, std::set<const Fabric*>& seen, double& smallest) {
+std::optional<double> thickness_in_cloth(const Fabric& fabric, const Weave& weave) {
+  const Result<System> warp = system_of(fabric, weave.warp), weft = system_of(fabric, weave.weft);
+  if (!warp || !weft) return std::nullopt;
+  return std::min(thickness_in_cloth(*warp, fabric.units, true), thickness_in_cloth(*weft, fabric.units, false));
+}
+
+// Blocks that were looked into are not looked into again. `is_in_cloth`: of weaves as thick as they lie.
+void look_for_smallest(const Fabric& fabric, bool is_in_cloth, std::set<const Fabric*>& seen,
+                       double& smallest) {
   const auto look = [&](const std::optional<double>& size) {
     if (size) smallest = std::min(smallest, *size);
   };
@@ -193,10 +201,12 @@ void look_for_smallest(const Fabric& fabric, std::set<const Fabric*>& seen, doub
     if (const auto* yarn = std::get_if<Yarn>(&item)) look(smallest_size(fabric, *yarn));
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) look(smallest_size(fabric, *thread));
+    if (const auto* weave = std::get_if<Weave>(&item); weave != nullptr && is_in_cloth)
+      look(thickness_in_cloth(fabric, *weave));
     const auto* use = std::get_if<Use>(&item);
     const NamedBlock* block = use != nullptr && !use->is_file ? find_block(fabric, use->what) : nullptr;
     if (block != nullptr && seen.insert(block->fabric.get()).second)
-      look_for_smallest(inside(fabric, *block), seen, smallest);
+      look_for_smallest(inside(fabric, *block), is_in_cloth, seen, smallest);
   }
 }
 
@@ -205,8 +215,15 @@ void look_for_smallest(const Fabric& fabric, std::set<const Fabric*>& seen, doub
 std::optional<double> smallest_section(const Fabric& fabric) {
   double smallest = std::numeric_limits<double>::infinity();
   std::set<const Fabric*> seen;
-  look_for_smallest(fabric, seen, smallest);
+  look_for_smallest(fabric, false, seen, smallest);
   return std::isfinite(smallest) ? std::optional(smallest) : std::nullopt;
+}
+
+double meshed_gap(const Fabric& fabric) {
+  double smallest = std::numeric_limits<double>::infinity();
+  std::set<const Fabric*> seen;
+  look_for_smallest(fabric, true, seen, smallest);
+  return std::isfinite(smallest) ? meshed_gap_fraction * smallest : 0.0;
 }
 
 double tolerance_of(const Fabric& fabric, const BuildOptions& options) {

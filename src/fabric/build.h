@@ -39,13 +39,15 @@ struct BuildOptions {
   WorkLimits work;
 };
 
-// The default of BuildOptions::gap where the space between yarns is meshed: this times smallest_section().
-// Between nearer yarns, tetrahedra are as flat as the gap.
-constexpr double meshed_gap_share = 0.05;
-
 // The smallest section size (width or thickness) of the yarns of the text, or of its constructions' threads;
 // file units, none where there is no size.
 std::optional<double> smallest_section(const Fabric& fabric);
+
+// The default of BuildOptions::gap where the space between yarns is meshed, file units: this fraction of the
+// smallest section, of tows in weaves as flat as they lie there. Between nearer yarns, tetrahedra are as flat
+// as the gap.
+constexpr double meshed_gap_fraction = 0.05;
+double meshed_gap(const Fabric& fabric);
 
 // The tolerance in force, file units.
 double tolerance_of(const Fabric& fabric, const BuildOptions& options);

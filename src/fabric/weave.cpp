@@ -89,8 +89,10 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
   if (!as_published_)
-    clearance_ +=
-        options.gap > 0.0 ? options.gap : clearance_share * std::min(warp_.thickest, weft_.thickest);
+    clearance_ += options.gap > 0.0 ? options.gap
+                  : has_formula_    ? clearance_share * std::min(warp_.thickest, weft_.thickest)
+                                    : clearance_share * std::min(thickness_in_cloth(warp_, fabric.units, true),
+                                                                 thickness_in_cloth(weft_, fabric.units, false));
   const Cell cell = fabric.cell.value_or(Cell{});
   const Box3 box = cell.shape().bounds();
   along_x_ = reach_over(weft_, has_cell, box.min().x(), box.max().x());
@@ -308,34 +310,7 @@ Status WeaveConstruction::prepare_formula(Diagnostics& diagnostics) {
   return {};
 }
 
-// Of a cloth that is pressed too far: the thinnest one, to half a percent, whatever has been asked for. None:
-// it is jammed at any thickness.
-std::optional<ClothInEquilibrium> WeaveConstruction::thinnest() const {
-  constexpr double step = 0.995;
-  if (!weave_.thickness && !weave_.fraction) return std::nullopt;
-  Weave weave = weave_;
-  weave.fraction.reset();
-  const auto find_at = [&](const std::optional<double>& thickness) {
-    weave.thickness = thickness;
-    return ClothInEquilibrium::find({&fabric_, &weave, &warp_, &weft_, &drawdown_, clearance_});
-  };
-  Result<ClothInEquilibrium> made = find_at(std::nullopt);
-  if (!made) return std::nullopt;
-  // By steps from the thickness that it has by itself: the first has been had, the last not.
-  const double free = made->thickness(),
-               asked = weave_.thickness ? *weave_.thickness : made->thickness_for(*weave_.fraction);
-  int had = 0, missed = static_cast<int>(std::ceil(std::log(asked / free) / std::log(step)));
-  while (missed - had > 1) {
-    const int middle = (had + missed) / 2;
-    Result<ClothInEquilibrium> pressed = find_at(rounded_up(free * std::pow(step, middle)));
-    (pressed ? had : missed) = middle;
-    if (pressed) made = std::move(pressed);
-  }
-  return std::move(*made);
-}
-
-// With remedies: of a thickness that is asked for the least one that the cloth has, else of its pitches and
-// yarns.
+// With remedies.
 Message WeaveConstruction::jammed(const Message& failure) const {
   if (!seeks_remedies_) return failure;
   const LooseCloth cloth{warp_, weft_, fabric_.units};
@@ -349,19 +324,6 @@ Message WeaveConstruction::jammed(const Message& failure) const {
                                                                  !is_over_dense(changed.warp, changed.weft);
                                                         })))
         .placed(failure.place);
-  if (const std::optional<ClothInEquilibrium> least = thinnest())
-    return error(Kind::geometry,
-                 weave_.fraction
-                     ? fmt::format(
-                           "these yarns do not fill {:.4g} of the cloth with fibre: {:.4g} at most, where "
-                           "they are pressed to packing fractions of {:.2f} (warp) and {:.2f} (weft)",
-                           *weave_.fraction, rounded_down(least->fraction()),
-                           least->report().systems.front().packing, least->report().systems.back().packing)
-                     : fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is "
-                                   "{:.6g} {} at the least",
-                                   *weave_.thickness, name_of(fabric_.units), rounded_up(least->thickness()),
-                                   name_of(fabric_.units)))
-        .placed(weave_.place);
   return error(Kind::geometry,
                fmt::format("the cloth is jammed: {}; {}", failure.text,
                            remedies_for(cloth,
@@ -384,7 +346,7 @@ Status WeaveConstruction::prepare_equilibrium(Diagnostics& diagnostics) {
       ClothInEquilibrium::find({&fabric_, &weave_, &warp_, &weft_, &drawdown_, clearance_});
   if (!found) {
     is_jammed_ = found.error().kind == Kind::geometry && found.error().place.line == weave_.place.line;
-    return found.error();
+    return found.error().place.line > 0 ? found.error() : found.error().placed(weave_.place);
   }
   equilibrium_ = std::move(*found);
   if (const std::string apart = what_falls_apart(drawdown_); !apart.empty())

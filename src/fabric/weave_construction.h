@@ -125,7 +125,6 @@ class WeaveConstruction final : public Construction {
   Status fit_drawing(Diagnostics& diagnostics);
   Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
-  [[nodiscard]] std::optional<ClothInEquilibrium> thinnest() const;
   // Of pile (weave_pile.cpp).
   struct Leg;
   struct BoundPart;

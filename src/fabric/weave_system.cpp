@@ -1,5 +1,7 @@
 #include "fabric/weave_system.h"
 
+#include "fabric/yarn_kind.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -99,6 +101,18 @@ Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, 
   if (Status checked = yarn::check_section(woven.section, woven.size); !checked)
     return checked.error().placed(woven.thread->place);
   return woven;
+}
+
+double thickness_in_cloth(const System& system, Unit units, bool is_warp) {
+  double thickest = 0.0;
+  for (const WovenThread& woven : system.threads) {
+    const Result<std::optional<double>> twist = twist_factor_of(*woven.thread, units, is_warp);
+    const Thread& thread = *woven.thread;
+    const bool is_flat = twist && *twist && **twist == 0.0 && !thread.section && !thread.diameter;
+    const double flat = yarn::area(woven.section, woven.size) / (0.25 * std::numbers::pi * system.text->pitch);
+    thickest = std::max(thickest, is_flat ? std::min(flat, woven.size.height) : woven.size.height);
+  }
+  return thickest;
 }
 
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {

@@ -42,6 +42,10 @@ struct System {
 Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place);
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
 
+// Thickness of the thickest yarn in the cloth, about: one without twist, and without a size of its own, lies
+// as wide as its pitch.
+double thickness_in_cloth(const System& system, Unit units, bool is_warp);
+
 // Puts warps above each other. Errors as of system_of.
 Status stack_columns(System& system, const Fabric& fabric, const std::vector<WarpColumn>& columns);
 

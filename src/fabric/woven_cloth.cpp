@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
+#include <optional>
 #include <utility>
 
+#include "core/rounding.h"
 #include "core/wrapped.h"
 #include "fabric/yarn_kind.h"
 #include "nurbs/restrict.h"
@@ -67,6 +70,20 @@ std::vector<double> gaps_of(const System& system, int count) {
   for (int k = 0; k < count; ++k)
     gaps.push_back(system.offsets.empty() ? system.text->pitch : system.at(k + 1) - system.at(k));
   return gaps;
+}
+
+// The last equilibrium is kept: a cloth and its data sheet are of one.
+Result<mechanics::WovenEquilibrium> equilibrium_of(const mechanics::WovenCloth& cloth) {
+  static std::mutex guard;
+  static std::optional<std::pair<mechanics::WovenCloth, mechanics::WovenEquilibrium>> last;
+  {
+    const std::lock_guard lock(guard);
+    if (last && last->first == cloth) return last->second;
+  }
+  Result<mechanics::WovenEquilibrium> found = mechanics::find_equilibrium(cloth);
+  const std::lock_guard lock(guard);
+  if (found) last.emplace(cloth, *found);
+  return found;
 }
 
 }  // namespace
@@ -137,28 +154,42 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
 Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
   Result<mechanics::WovenCloth> cloth = woven_cloth(text);
   if (!cloth) return cloth.error();
-  Result<mechanics::WovenEquilibrium> equilibrium = mechanics::find_equilibrium(*cloth);
+  Result<mechanics::WovenEquilibrium> equilibrium = equilibrium_of(*cloth);
   if (!equilibrium) return equilibrium.error().placed(text.weave->place);
   ClothInEquilibrium made(text, *cloth, std::move(*equilibrium));
-  if (!text.weave->fraction) return made;
-  // The length of yarns depends on the thickness, but little.
-  constexpr double tolerance = 1e-7;
-  constexpr int most_rounds = 30;
-  const double fraction = *text.weave->fraction;
-  if (made.fraction() > fraction)
-    return error(Kind::malformed,
-                 fmt::format("the cloth has a fibre fraction of {:.4g} by itself: leave out 'fraction {:g}', "
-                             "or open the cloth",
-                             made.fraction(), fraction))
-        .placed(text.weave->place);
-  for (int round = 0; round < most_rounds && std::abs(made.fraction() / fraction - 1.0) > tolerance;
-       ++round) {
-    cloth->thickness = made.thickness_for(fraction);
-    equilibrium = mechanics::find_equilibrium(*cloth);
-    if (!equilibrium) return equilibrium.error().placed(text.weave->place);
-    made = ClothInEquilibrium(text, *cloth, std::move(*equilibrium));
+  if (const std::optional<double>& fraction = text.weave->fraction) {
+    // The length of yarns depends on the thickness, but little.
+    constexpr double exactness = 1e-7;
+    constexpr int most_rounds = 20;
+    if (made.fraction() > *fraction)
+      return error(Kind::geometry,
+                   fmt::format("the cloth has a fibre fraction of {:.4g} by itself, more than {:.4g}: leave out "
+                               "the fraction, or open the cloth",
+                               made.fraction(), *fraction));
+    for (int round = 0; round < most_rounds && std::abs(made.fraction() / *fraction - 1.0) > exactness;
+         ++round) {
+      cloth->thickness = made.thickness_for(*fraction);
+      made = ClothInEquilibrium(text, *cloth, made.equilibrium_.pressed(*cloth->thickness));
+      if (made.is_too_thick()) break;
+    }
   }
-  return made;
+  if (!made.is_too_thick()) return made;
+  const std::string_view unit = name_of(text.fabric->units);
+  if (!text.weave->fraction)
+    return error(Kind::geometry,
+                 fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is {:.6g} {} at the "
+                             "least",
+                             *cloth->thickness, unit, rounded_up(made.equilibrium_.thickness()), unit));
+  return error(Kind::geometry,
+               fmt::format("the yarns of this cloth do not fill {:.4g} of it with fibre: {:.4g} at the most, at "
+                           "packing fractions of {:.2f} (warp) and {:.2f} (weft)",
+                           *text.weave->fraction, rounded_down(made.fraction()), made.report().systems[0].packing,
+                           made.report().systems[1].packing));
+}
+
+bool ClothInEquilibrium::is_too_thick() const {
+  constexpr double exactness = 1e-6;
+  return cloth_.thickness && equilibrium_.thickness() > *cloth_.thickness * (1.0 + exactness);
 }
 
 ClothInEquilibrium::ClothInEquilibrium(const ClothText& text, mechanics::WovenCloth cloth,

@@ -37,8 +37,8 @@ struct ClothYarn {
 
 class ClothInEquilibrium {
  public:
-  // Errors: of woven_cloth; of find_equilibrium, at the weave; a fraction that the cloth exceeds by itself
-  // (malformed).
+  // Errors: of woven_cloth; of find_equilibrium, at the weave; a thickness or fraction that it does not have
+  // (geometry, without a place).
   static Result<ClothInEquilibrium> find(const ClothText& text);
 
   // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with
@@ -51,8 +51,6 @@ class ClothInEquilibrium {
   [[nodiscard]] double thickness() const { return top_ - bottom_; }
   // Of fibre over the whole cloth, its layers a clearance apart.
   [[nodiscard]] double fraction() const;
-  // Of a layer that has this fraction, with yarns as long as they are.
-  [[nodiscard]] double thickness_for(double fraction) const;
   [[nodiscard]] double max_width(bool is_weft) const { return max_width_[is_weft ? 1 : 0]; }
   [[nodiscard]] double max_height(bool is_weft) const { return max_height_[is_weft ? 1 : 0]; }
   [[nodiscard]] EquilibriumReport report() const;
@@ -67,6 +65,9 @@ class ClothInEquilibrium {
   [[nodiscard]] nurbs::Curve unclamped(const ClothYarn& yarn, long long first, long long last) const;
   [[nodiscard]] int number(const ClothYarn& yarn) const;  // in cloth_
   [[nodiscard]] double fibre_volume() const;              // of a layer, over its area
+  // Of a layer that has this fraction, with yarns as long as they are.
+  [[nodiscard]] double thickness_for(double fraction) const;
+  [[nodiscard]] bool is_too_thick() const;
   [[nodiscard]] std::vector<ClothYarn> yarns(bool is_weft) const;
   [[nodiscard]] int crossings(bool is_weft) const { return is_weft ? cloth_.columns() : cloth_.rows(); }
 

@@ -11,6 +11,7 @@ struct WovenConstants {
   double flattening = 0.32;    // at a twist factor of 4,000, over tension * fibre area
   double packing = 0.737;      // of staple yarns at rest in a dense cloth
   double compaction = 0.85;    // van Wyk's stiffness over tension per fibre area
+  bool operator==(const WovenConstants&) const = default;
 };
 
 // Of the literature.

@@ -15,6 +15,8 @@ namespace selvage::mechanics {
 
 namespace {
 
+using Eigen::VectorXd;
+
 // Shares of the waves from which a search begins.
 constexpr std::array<double, 3> warp_shares = {0.5, 0.8, 0.2};
 
@@ -51,6 +53,64 @@ Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_roun
   return at;
 }
 
+// Rough minima from all starts; those that are no copies of each other are polished, and the one of least
+// energy is taken: of equal ones (1e-6) that of the first start.
+Result<Minimum> least_minimum(WovenProblem& problem, const std::vector<VectorXd>& starts, double tolerance) {
+  constexpr double rough = 1e-3, fine = 1e-5, promising = 0.01, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
+  constexpr int rough_rounds = 2, max_rounds = 30;
+  BarrierWorkspace workspace;
+  struct Candidate {
+    Minimum minimum;
+    std::vector<char> active;
+  };
+  std::vector<Candidate> candidates;
+  int steps = 0;
+  for (const VectorXd& x : starts) {
+    Minimum start;
+    start.x = x;
+    problem.set_active({});
+    Minimum found = settle(problem, std::move(start), rough, rough_rounds, workspace);
+    steps += found.steps;
+    // Of copies the lower one, whatever the order of the starts.
+    const auto copied = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+      return (other.minimum.x - found.x).cwiseAbs().maxCoeff() < copy;
+    });
+    if (copied == candidates.end())
+      candidates.push_back({std::move(found), problem.active()});
+    else if (found.energy < copied->minimum.energy)
+      *copied = {std::move(found), problem.active()};
+  }
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.minimum.energy < b.minimum.energy;
+  });
+  std::optional<Minimum> best;
+  double residual = std::numeric_limits<double>::infinity(), overlap = 0.0;
+  for (Candidate& candidate : candidates) {
+    if (best && candidate.minimum.energy > best->energy * (1.0 + promising)) break;
+    problem.set_active(std::move(candidate.active));
+    candidate.minimum.steps = 0;
+    Minimum found = settle(problem, std::move(candidate.minimum), fine, max_rounds, workspace);
+    found = settle(problem, std::move(found), tolerance, max_rounds, workspace);
+    steps += found.steps;
+    // Rounds that never came to rest leave an inequality violated: no equilibrium, whatever the residual.
+    const double violation = problem.worst(found.x);
+    if (found.residual < residual) {
+      residual = found.residual;
+      overlap = violation;
+    }
+    if (found.is_converged && violation <= max_violation &&
+        (!best || found.energy < best->energy * (1.0 - tie)))
+      best = std::move(found);
+  }
+  if (!best)
+    return error(
+        Kind::geometry,
+        fmt::format("no equilibrium without overlap was found (residual {:.1e}, overlap {:.2g} of a yarn)",
+                    residual, overlap));
+  best->steps = steps;
+  return std::move(*best);
+}
+
 }  // namespace
 
 double WovenEquilibrium::control_height(WovenSystem system, int yarn, int knot) const {
@@ -68,70 +128,52 @@ WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, doub
   return {between(0), between(1)};
 }
 
+// In steps that become smaller where there is no equilibrium.
+WovenEquilibrium WovenEquilibrium::pressed(double thickness) const {
+  constexpr double first_step = 0.9, last_step = 0.998;
+  WovenEquilibrium at = *this;
+  double by = first_step, reached = this->thickness();
+  while (reached > thickness && by < last_step) {
+    const double next = std::max(thickness, by * reached);
+    WovenCloth cloth = problem_->cloth();
+    cloth.thickness = next / scale_;
+    const auto problem = std::make_shared<WovenProblem>(cloth, problem_->classes());
+    Result<Minimum> found =
+        least_minimum(*problem, {problem->flattened(at.minimum_.x, next / reached)}, tolerance_);
+    if (!found) {
+      by = std::sqrt(by);
+      continue;
+    }
+    found->steps += at.minimum_.steps;
+    reached = next;
+    at.problem_ = problem;
+    at.minimum_ = std::move(*found);
+  }
+  return at;
+}
+
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {
-  // Rough minima from all starts; those that are no copies of each other are polished, and the one of least
-  // energy is taken: of equal ones (1e-6) that of the first start.
-  constexpr double rough = 1e-3, fine = 1e-5, promising = 0.01, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
-  constexpr int rough_rounds = 2, max_rounds = 30;
   // In drafts of more kinds of crossings the systems share their waves from place to place, whatever the
   // start.
   constexpr int most_classes_of_starts = 32;
-  Partition classes = classes_of(cloth, options.max_classes);
+  const Partition classes = classes_of(cloth, options.max_classes);
   if (!classes.is_exact)
     return error(Kind::limit,
                  fmt::format("the crossings of its repeat of {} x {} are of more than {} classes",
                              cloth.columns(), cloth.rows(), options.max_classes));
   const double scale = std::sqrt(mean_area(cloth));
-  const WovenCloth ratios = scaled(cloth, 1.0 / scale);
-  const auto problem = std::make_shared<WovenProblem>(ratios, std::move(classes));
-  BarrierWorkspace workspace;
-  struct Candidate {
-    Minimum minimum;
-    std::vector<char> active;
-  };
-  std::vector<Candidate> candidates;
-  int steps = 0;
+  WovenCloth ratios = scaled(cloth, 1.0 / scale);
+  ratios.thickness.reset();
+  const auto problem = std::make_shared<WovenProblem>(ratios, classes);
+  std::vector<VectorXd> starts;
   for (const double share : warp_shares) {
-    Minimum start;
-    start.x = problem->start(cloth.warp_share.value_or(share));
-    problem->set_active({});
-    Minimum found = settle(*problem, std::move(start), rough, rough_rounds, workspace);
-    steps += found.steps;
-    const bool is_copy = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-      return (other.minimum.x - found.x).cwiseAbs().maxCoeff() < copy;
-    });
-    if (!is_copy) candidates.push_back({std::move(found), problem->active()});
-    if (cloth.warp_share || problem->classes().count() > most_classes_of_starts) break;
+    starts.push_back(problem->start(cloth.warp_share.value_or(share)));
+    if (cloth.warp_share || classes.count() > most_classes_of_starts) break;
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.minimum.energy < b.minimum.energy;
-  });
-  std::optional<Minimum> best;
-  double residual = std::numeric_limits<double>::infinity(), overlap = 0.0;
-  for (Candidate& candidate : candidates) {
-    if (best && candidate.minimum.energy > best->energy * (1.0 + promising)) break;
-    problem->set_active(std::move(candidate.active));
-    candidate.minimum.steps = 0;
-    Minimum found = settle(*problem, std::move(candidate.minimum), fine, max_rounds, workspace);
-    found = settle(*problem, std::move(found), options.tolerance, max_rounds, workspace);
-    steps += found.steps;
-    // Rounds that never came to rest leave an inequality violated: no equilibrium, whatever the residual.
-    const double violation = problem->worst(found.x);
-    if (found.residual < residual) {
-      residual = found.residual;
-      overlap = violation;
-    }
-    if (found.is_converged && violation <= max_violation &&
-        (!best || found.energy < best->energy * (1.0 - tie)))
-      best = std::move(found);
-  }
-  if (!best)
-    return error(
-        Kind::geometry,
-        fmt::format("no equilibrium without overlap was found (residual {:.1e}, overlap {:.2g} of a yarn)",
-                    residual, overlap));
-  best->steps = steps;
-  return WovenEquilibrium(problem, std::move(*best), scale);
+  Result<Minimum> found = least_minimum(*problem, starts, options.tolerance);
+  if (!found) return found.error();
+  const WovenEquilibrium free(problem, std::move(*found), scale, options.tolerance);
+  return cloth.thickness ? free.pressed(*cloth.thickness) : free;
 }
 
 }  // namespace selvage::mechanics

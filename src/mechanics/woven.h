@@ -13,8 +13,9 @@ namespace selvage::mechanics {
 
 class WovenEquilibrium {
  public:
-  WovenEquilibrium(std::shared_ptr<const WovenProblem> problem, Minimum minimum, double scale)
-      : problem_(std::move(problem)), minimum_(std::move(minimum)), scale_(scale) {}
+  WovenEquilibrium(std::shared_ptr<const WovenProblem> problem, Minimum minimum, double scale,
+                   double tolerance)
+      : problem_(std::move(problem)), minimum_(std::move(minimum)), scale_(scale), tolerance_(tolerance) {}
 
   // The control value of a centre line, in the cloth's unit; `knot` is spans_a_gap times the number of the
   // crossing at crossings. Cubic B-splines; the knots divide each gap evenly.
@@ -28,6 +29,12 @@ class WovenEquilibrium {
 
   // Mean of a system's yarns, (L - p) / p.
   [[nodiscard]] double crimp(WovenSystem system) const { return problem_->crimp(system, minimum_.x); }
+  // Between plates this far apart (in the cloth's unit), or as far as they can be brought together, to 0.2 %;
+  // itself where it is thinner.
+  [[nodiscard]] WovenEquilibrium pressed(double thickness) const;
+
+  // Distance of the plates that touch it, in the cloth's unit.
+  [[nodiscard]] double thickness() const { return scale_ * problem_->thickness(minimum_.x); }
   [[nodiscard]] WovenEnergy energy() const { return problem_->energy(minimum_.x); }
   [[nodiscard]] double residual() const { return minimum_.residual; }
   // Largest overlap that any inequality sees, in the cloth's unit.
@@ -38,7 +45,7 @@ class WovenEquilibrium {
  private:
   std::shared_ptr<const WovenProblem> problem_;
   Minimum minimum_;
-  double scale_;
+  double scale_, tolerance_;
 };
 
 struct WovenOptions {
@@ -47,7 +54,8 @@ struct WovenOptions {
 };
 
 // Errors: no equilibrium without overlap was found (geometry), with the residual; the crossings of the repeat
-// are of more classes than options.max_classes (limit).
+// are of more classes than options.max_classes (limit). Of a cloth with a thickness that it cannot have: the
+// thinnest one.
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options = {});
 
 }  // namespace selvage::mechanics

@@ -524,6 +524,21 @@ VectorXd WovenProblem::start(double warp_share) const {
   return x;
 }
 
+VectorXd WovenProblem::flattened(VectorXd x, double by) const {
+  for (const int representative : classes_.representatives) {
+    const Crossing at = crossing(representative);
+    for (const Strand strand : strands(at)) {
+      for (int knot = 0; knot < spans_a_gap; ++knot) x[height(strand, at, knot)] *= by;
+      for (int half = 0; half < 2; ++half) {
+        const int width = width_at(strand, at, half);
+        x[width] /= std::sqrt(by);
+        x[width + 1] *= by;
+      }
+    }
+  }
+  return x;
+}
+
 VectorXd WovenProblem::equality() const {
   if (!cloth_.warp_share) return {};
   VectorXd made = VectorXd::Zero(num_unknowns_);

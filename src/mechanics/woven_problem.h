@@ -53,6 +53,7 @@ struct WovenCloth {
   [[nodiscard]] int first_warp(int column) const {
     return first_warps.empty() ? column : first_warps[static_cast<std::size_t>(column)];
   }
+  bool operator==(const WovenCloth&) const = default;
 };
 
 struct WovenEnergy {
@@ -71,6 +72,10 @@ class WovenProblem final : public BarrierProblem {
   // Unknowns of a start: sections at rest, centre lines whose crimp heights at a crossing sum to the
   // thickness of both yarns there; warp_share: fraction of it that the warp takes.
   [[nodiscard]] Eigen::VectorXd start(double warp_share) const;
+  // Everything `by` times as high, and half of that made up for by width.
+  [[nodiscard]] Eigen::VectorXd flattened(Eigen::VectorXd x, double by) const;
+  // Distance of the plates that touch the cloth.
+  [[nodiscard]] double thickness(const Eigen::VectorXd& x) const;
   // Which inequalities take part: all that are not far from touching. True: one has entered that is violated
   // by more than `tolerance`, or one that no longer holds has left. Multipliers and slacks follow.
   bool update(Minimum& at, double tolerance);
@@ -91,6 +96,7 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] double crimp(WovenSystem system, const Eigen::VectorXd& x) const;
   // The deepest violation of any inequality, whether it takes part or not.
   [[nodiscard]] double worst(const Eigen::VectorXd& x) const;
+  [[nodiscard]] const WovenCloth& cloth() const { return cloth_; }
   [[nodiscard]] const Partition& classes() const { return classes_; }
   // Places of unknowns of a yarn of the repeat. `knot`: from its first crossing, spans_a_gap a gap. `half`: 2
   // a gap.

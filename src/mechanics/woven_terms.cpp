@@ -237,6 +237,14 @@ WovenEnergy WovenProblem::energy(const VectorXd& x) const {
   return made;
 }
 
+double WovenProblem::thickness(const VectorXd& x) const {
+  const std::vector<Values> values = values_at(x);
+  double half = 0.0;
+  for (const Fold& at : folds_)
+    half = std::max(half, at.side * values[at.station][z] + values[at.station][half_height]);
+  return 2.0 * half;
+}
+
 double WovenProblem::crimp(WovenSystem system, const VectorXd& x) const {
   const std::vector<Values> values = values_at(x);
   double yarn = 0.0, cloth = 0.0;

@@ -91,7 +91,7 @@ double gap_of_constructions(const Options& options, const fabric::Fabric& fabric
   // Voxels need no gap: they take the cloth as it comes.
   if (!is_cut && !(is_meshed && (options.voxels == 0 || options.relaxing.gap))) return 0;
   if (options.relaxing.gap) return *options.relaxing.gap;
-  return fabric::meshed_gap_share * fabric::smallest_section(fabric).value_or(0.0);
+  return fabric::meshed_gap(fabric);
 }
 
 bool set_matrix_material(Job& job, fabric::Fabric& fabric) {
@@ -527,7 +527,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
         fmt::format(
             "{}, less than 1 % of their thickness: what lies between would be meshed as flat as that; "
             "--relax --gap {:.2g} moves them apart where they have room, --force meshes them as they are",
-            who, fabric::meshed_gap_share * thin),
+            who, fabric::meshed_gap_fraction * thin),
         {.at = nearest->at}));
   constexpr double rounding = 1e-3;
   if (nearest->gap < (1.0 - rounding) * wanted)

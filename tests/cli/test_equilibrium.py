@@ -31,6 +31,29 @@ def cotton(unit="mm", tex=20, warp=0.34, weft=0.4, draft="twill 2/1", state="fin
     )
 
 
+TOWS = """fabric 1
+units {unit}
+material epoxy
+  elastic isotropic 3400 0.35
+end
+thread tow
+  tex 198
+  filaments 3000
+  density 1.76
+  material carbon
+end
+weave
+  warp tow 8 5/cm
+  weft tow 8 5/cm
+  draft {draft}
+{statement}end
+"""
+
+
+def tows(unit="mm", draft="plain", statement=""):
+    return TOWS.format(unit=unit, draft=draft, statement=statement)
+
+
 LAYERS = """fabric 1
 thread tow
   section ellipse 0.8 0.3
@@ -187,6 +210,31 @@ class Equilibrium(Case):
         least = float(re.search(r"it is (\S+) mm at the least", said)[1])
         self.is_sound(cotton(draft="plain", statement=f"  thickness {least}\n"))
         self.failure(cotton(draft="plain", statement=f"  thickness {0.97 * least}\n"))
+
+    def test_fraction_of_fibre(self):
+        """By mass, density and thickness; in two layers that are a clearance apart, in two units and two drafts."""
+        for unit, draft in (("mm", "plain"), ("in", "twill 2/2")):
+            cloth = self.sheet(tows(unit=unit, draft=draft, statement="  layers 2\n  fraction 0.60\n"))
+            self.assertAlmostEqual(cloth["mass"] / 1760 / cloth["thickness"], 0.60, delta=1e-3)
+            self.assertAlmostEqual(cloth["fibre_fraction"], 0.60, delta=1e-3)
+            for system in cloth["systems"].values():
+                self.assertLess(system["packing_fraction"], 0.80)
+        free = self.sheet(tows())
+        self.assertLess(free["fibre_fraction"], 0.5)
+        said = self.failure(tows(statement="  fraction 0.4\n"))
+        self.assertRegex(said, r":12:1: error: the cloth has a fibre fraction of 0\.4\d+ by itself")
+        said = self.failure(tows(statement="  fraction 0.8\n"))
+        largest = float(re.search(r"of it with fibre: (\S+) at the most", said)[1])
+        self.is_sound(tows(statement=f"  fraction {largest}\n"))
+        self.failure(tows(statement=f"  fraction {1.01 * largest}\n"))
+
+    def test_what_excludes_a_fraction(self):
+        for statement in ("thickness 0.2", "profile sine", "pile 3", "pucker tight 3 slack 6 ratio 1.08 every 12"):
+            said = self.failure(tows(statement=f"  fraction 0.6\n  {statement}\n"))
+            self.assertIn(":16:3: error: 'fraction' and '" + statement.split()[0] + "' exclude each other", said)
+        for value in ("0", "-1", "0.95", "60"):
+            said = self.failure(tows(statement=f"  fraction {value}\n"))
+            self.assertIn(":16:12: error: a fibre fraction of the cloth lies between 0 and 0.907", said)
 
 
 if __name__ == "__main__":

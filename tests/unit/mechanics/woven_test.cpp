@@ -325,6 +325,51 @@ TEST(Woven, TheWarpHasTheShareOfTheWavesThatIsAskedFor) {
   EXPECT_NEAR(warp / (warp + weft), 0.7, 1e-6);
 }
 
+// Flat tows, 0.2 of a pitch thick by themselves.
+WovenCloth tows(const std::vector<std::vector<int>>& draft) {
+  WovenCloth cloth = cloth_of(draft, 0.1125, 2.0);
+  cloth.weft_gaps = cloth.warp_gaps;
+  for (auto* yarns : {&cloth.warps, &cloth.wefts})
+    for (WovenYarn& yarn : *yarns) yarn.stiffness = stiffness_by_twist(0);
+  return cloth;
+}
+
+// The work of plates is that of the energy: it grows the faster, the nearer they are.
+TEST(Woven, PlatesPressACloth) {
+  for (const auto& draft : {plain, {{1, 1, 0, 0}, {0, 1, 1, 0}, {0, 0, 1, 1}, {1, 0, 0, 1}}}) {
+    const WovenCloth cloth = tows(draft);
+    const WovenEquilibrium free = found(cloth);
+    EXPECT_EQ(free.pressed(1.01 * free.thickness()).energy().sum(), free.energy().sum());
+    std::vector<double> energies = {free.energy().sum()};
+    for (const double part : {0.95, 0.9, 0.85, 0.8}) {
+      const double thickness = part * free.thickness();
+      const WovenEquilibrium pressed = free.pressed(thickness);
+      EXPECT_NEAR(pressed.thickness(), thickness, 1e-7 * thickness);
+      EXPECT_LT(pressed.overlap(), 1e-6);
+      energies.push_back(pressed.energy().sum());
+      WovenCloth between = cloth;
+      between.thickness = thickness;
+      EXPECT_LT(largest_difference(numbers_of(pressed, cloth, 2.0), numbers_of(found(between), cloth, 2.0)), 1e-6);
+      EXPECT_NEAR(free.pressed(0.97 * free.thickness()).pressed(thickness).energy().sum() / energies.back(), 1.0, 1e-3);
+    }
+    for (std::size_t k = 2; k < energies.size(); ++k)
+      EXPECT_GT(energies[k] - energies[k - 1], energies[k - 1] - energies[k - 2]);
+  }
+}
+
+// Hexagonal packing fills every yarn: 2 * 0.1125 / 2 of fibre over 0.907 is the least height of what lies there.
+TEST(Woven, PlatesComeNoNearerThanFibresArePacked) {
+  const WovenEquilibrium free = found(tows(plain)), pressed = free.pressed(0.01);
+  const double solid = 0.1125 / densest_packing;
+  EXPECT_GT(pressed.thickness(), solid);
+  EXPECT_LT(pressed.thickness(), 4.0 / std::numbers::pi * 1.1 * solid);  // of ellipses, nearly side by side
+  for (const double crossings : {0.0, 0.5}) {
+    const auto size = pressed.size(WovenSystem::warp, 0, crossings);
+    EXPECT_LT(0.1125 / (std::numbers::pi / 4.0 * size.width * size.height), densest_packing * (1.0 + 1e-6));
+  }
+  EXPECT_NEAR(free.pressed(1.003 * pressed.thickness()).thickness(), 1.003 * pressed.thickness(), 1e-8);
+}
+
 TEST(Woven, ACloseClothIsJammed) {
   // Fibres need 0.0132 / 0.907 = 0.0146; a warp between its neighbours is 0.3 high and
   // rises by more than that over 0.055: no slope allows it.
