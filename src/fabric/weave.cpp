@@ -89,14 +89,17 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
   if (!as_published_)
-    clearance_ += options.gap > 0.0 ? options.gap
-                  : has_formula_    ? clearance_share * std::min(warp_.thickest, weft_.thickest)
-                                    : clearance_share * std::min(thickness_in_cloth(warp_, fabric.units, true),
-                                                                 thickness_in_cloth(weft_, fabric.units, false));
+    clearance_ += options.gap > 0.0 ? options.gap : clearance_share * thinnest();
   const Cell cell = fabric.cell.value_or(Cell{});
   const Box3 box = cell.shape().bounds();
   along_x_ = reach_over(weft_, has_cell, box.min().x(), box.max().x());
   along_y_ = reach_over(warp_, has_cell, box.min().y(), box.max().y());
+}
+
+// Thickness of the thinner system; tows between plates lie flat.
+double WeaveConstruction::thinnest() const {
+  if (!weave_.fraction) return std::min(warp_.thickest, weft_.thickest);
+  return std::min(thickness_in_cloth(warp_, fabric_.units, true), thickness_in_cloth(weft_, fabric_.units, false));
 }
 
 void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, const Row& row) {

@@ -123,6 +123,7 @@ class WeaveConstruction final : public Construction {
   Status prepare_heights(Diagnostics& diagnostics);
   Status prepare_formula(Diagnostics& diagnostics);
   Status fit_drawing(Diagnostics& diagnostics);
+  [[nodiscard]] double thinnest() const;
   Status prepare_equilibrium(Diagnostics& diagnostics);
   [[nodiscard]] Message jammed(const Message& failure) const;
   // Of pile (weave_pile.cpp).
