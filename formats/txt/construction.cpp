@@ -148,7 +148,7 @@ constexpr long long most_shafts_checked = 100;
 // A weave's statements, and the places of those that only the whole block can validate: of its draft, which
 // is required or forbidden, and of its state, which conflicts with other statements.
 struct WeaveBlock : Weave {
-  std::optional<Spot> draft_place, state_place, levels_place, fraction_place;
+  std::optional<Spot> draft_place, state_place, levels_place, fraction_place, pile_place;
   std::vector<Spot> stacked_warps;
 };
 
@@ -447,6 +447,7 @@ void check_levels(Parser& p, const WeaveBlock& weave) {
 // pile H [THREAD] [every N] [face | back | both] [cut]
 void read_warp_pile(Parser& p, WeaveBlock& weave, std::string_view) {
   fabric::WarpPile pile;
+  weave.pile_place = p.statement();
   pile.place = p.statement().place();
   pile.picks = 0;
   pile.height = p.positive("the height of the pile", Measure::length).value_or(1.0);
@@ -472,28 +473,34 @@ void read_warp_pile(Parser& p, WeaveBlock& weave, std::string_view) {
   weave.pile = std::move(pile);
 }
 
-// Three picks from loop to loop, as most terry has, or as many as the picks can be divided by.
-void check_pile(Parser& p, WeaveBlock& weave, const Spot& opened) {
+// Reports statements of a weave that its pile excludes, and a pile without a thread of its own.
+void check_pile(Parser& p, WeaveBlock& weave) {
   if (!weave.pile && !weave.draft.has_pile()) return;
+  const Spot place = weave.pile ? *weave.pile_place : *weave.draft_place;
   const std::string what =
-      weave.pile ? "a pile" : fmt::format("a {}", word_of(draft_words, weave.draft.form));
-  if (weave.profile || weave.pucker || weave.layers || weave.spacing || !weave.binders.empty() ||
-      weave.levels_place || weave.draft.form == Draft::Form::leno)
-    p.error(opened,
-            fmt::format("{} goes with one layer of interlaced yarns in equilibrium: leave out profile, "
-                        "spacing, pucker, layers, levels, binder, and a leno",
-                        what));
-  if (weave.pile && weave.draft.has_pile())
-    p.error(opened, fmt::format("{} has a pile of its picks: leave out 'pile', or use another draft", what));
+      weave.pile ? "pile" : fmt::format("draft {}", word_of(draft_words, weave.draft.form));
+  const auto report = [&](bool is, std::string_view word, std::string_view why) {
+    if (is)
+      p.error(place,
+              fmt::format("'{}' and '{}' exclude each other, {}: leave out one of them", what, word, why));
+  };
+  report(weave.profile.has_value(), "profile", "since pile rises out of a ground whose paths are free");
+  report(weave.spacing.has_value(), "spacing", "since pile rises between picks or ends at even pitches");
+  report(weave.pucker.has_value(), "pucker", "since pile rises out of a level ground");
+  report(weave.layers.has_value(), "layers", "since a cloth of pile is one layer");
+  report(weave.levels_place.has_value(), "levels", "since a cloth of pile is one layer");
+  report(weave.draft.form == Draft::Form::leno, "draft leno", "since ends of pile stay beside the warps");
+  report(weave.pile && weave.draft.has_pile(),
+         fmt::format("draft {}", word_of(draft_words, weave.draft.form)), "since its picks are pile");
   const std::vector<std::string>& threads = weave.weft.threads;
   if (weave.draft.has_pile() && std::all_of(threads.begin(), threads.end(), [&](const std::string& thread) {
         return thread == threads.front();
       }))
-    p.error(opened,
-            fmt::format("the picks of {} are ground and pile in turn, the pile of a thread of its own: write "
-                        "'weft {},2NAME ...' for one ground pick and two pile picks",
-                        what, threads.empty() ? "GROUND" : threads.front()));
+    p.error(place, fmt::format("the picks of '{}' are ground and pile in turn, the pile of a thread of its "
+                               "own: write 'weft {},2NAME ...' for one ground pick and two pile picks",
+                               what, threads.empty() ? "GROUND" : threads.front()));
   if (!weave.pile || weave.pile->picks > 0) return;
+  // As most terry has, or as many as the picks can be divided by.
   weave.pile->picks = 3;
   for (const int picks : {3, 4, 5})
     if (weave.weft.count % picks == 0) {
@@ -911,7 +918,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     check_state(p, weave);
     check_fraction(p, weave);
     check_levels(p, weave);
-    check_pile(p, weave, opened);
+    check_pile(p, weave);
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

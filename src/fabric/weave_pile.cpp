@@ -503,7 +503,8 @@ Status WeaveConstruction::prepare_pile(Diagnostics& diagnostics) {
 std::optional<PileReport> WeaveConstruction::pile() const {
   if (!has_pile()) return std::nullopt;
   const double mm = millimetres_per(fabric_.units);
-  PileReport report{mm * pile_height_, mm * (ground_top_ - ground_bottom_), std::nullopt};
+  PileReport report{mm * pile_height_, mm * (ground_top_ - ground_bottom_), {}, {}};
+  if (weave_.pile) report.ends_per_mm = 1.0 / (mm * weave_.warp.pitch);
   if (weave_.draft.form == Draft::Form::corduroy)
     report.wales_per_mm = 1.0 / (mm * weave_.draft.a * warp_.text->pitch);
   return report;
