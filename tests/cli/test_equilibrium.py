@@ -55,6 +55,33 @@ def upside_down(column):
     return " , ".join(" ".join(map(str, warp)) for warp in reversed(warps))
 
 
+PILE = """fabric 1
+units {unit}
+thread ground
+  tex 50
+  material cotton
+end
+thread pile
+  tex {tex}
+  material cotton
+end
+weave
+  warp  {warp}
+  weft  {weft}
+{statements}end
+"""
+
+
+def terry(pile, unit="mm", tex=37, ends="13/cm", picks="18/cm", more="  draft plain\n"):
+    statements = f"{more}  pile {pile}\n"
+    return PILE.format(unit=unit, tex=tex, warp=f"ground 4 {ends}", weft=f"ground 12 {picks}", statements=statements)
+
+
+def weft_pile(draft, picks, unit="mm", tex=30, more=""):
+    weft = f"ground,2pile 12 {picks}/cm"
+    return PILE.format(unit=unit, tex=tex, warp="ground 12 20/cm", weft=weft, statements=f"  draft {draft}\n{more}")
+
+
 class Equilibrium(Case):
     def sheet(self, text):
         path = self.folder / "cloth.txt"
@@ -187,6 +214,52 @@ class Equilibrium(Case):
         least = float(re.search(r"it is (\S+) mm at the least", said)[1])
         self.is_sound(cotton(draft="plain", statement=f"  thickness {least}\n"))
         self.failure(cotton(draft="plain", statement=f"  thickness {0.97 * least}\n"))
+
+    def test_pile_is_sound(self):
+        for text in (
+            terry("3 pile every 3"),
+            terry("0.6 every 5 face"),
+            terry("2 pile every 4 both cut"),
+            terry("1.5 pile every 5 back cut", more="  draft twill 2/1\n  state loom\n"),
+            terry("4 pile", more="  draft plain\n  state relaxed\n"),
+            weft_pile("corduroy", 40),
+            weft_pile("corduroy 10", 30, more="  state loom\n"),
+            weft_pile("velveteen 4", 40),
+            weft_pile("velveteen 8", 25),
+        ):
+            self.is_sound(text)
+
+    def test_data_sheet_of_pile(self):
+        low, high = (self.sheet(terry(f"{height} pile every 3")) for height in (2, 5))
+        for height, sheet in ((2, low), (5, high)):
+            self.assertAlmostEqual(sheet["pile_height"], height, delta=1e-9)
+            # On both sides of the ground.
+            self.assertAlmostEqual(sheet["thickness"], 2 * height + sheet["ground_thickness"], delta=1e-3)
+            # 1300 ends a metre of 37 tex.
+            mass = 1300 * 37e-3 * sheet["pile_ratio"]
+            self.assertAlmostEqual(sheet["systems"]["pile"]["mass"] / mass, 1, delta=1e-6)
+        # A loop in three picks of 1/1.8 mm has two more legs of 3 mm.
+        self.assertAlmostEqual((high["pile_ratio"] - low["pile_ratio"]) / (2 * 3 / (3 / 1.8)), 1, delta=0.01)
+        self.assertAlmostEqual(low["ground_thickness"] / high["ground_thickness"], 1, delta=1e-9)
+        corduroy = self.sheet(weft_pile("corduroy 8", 40))
+        self.assertAlmostEqual(corduroy["wales_per_cm"], 20 / 8, delta=1e-9)
+        self.assertNotIn("pile_ratio", corduroy)
+
+    def test_pile_is_the_same_in_five_units(self):
+        for height, statements in ((2, " pile every 3"), (1.5, " pile every 4 cut")):
+            expected = self.sheet(terry(f"{height}{statements}"))
+            for unit, size in MILLIMETRES.items():
+                found = self.sheet(terry(f"{height / size!r}{statements}", unit))
+                for what in ("mass", "thickness", "ground_thickness", "pile_height", "pile_ratio"):
+                    self.assertLess(abs(found[what] / expected[what] - 1), 1e-6, (unit, what))
+
+    def test_remedies_of_pile_work(self):
+        low = re.search(r":15:3: error: .* lower .*: ([0-9.]+) mm at least", self.failure(terry("0.05 pile")))
+        self.is_sound(terry(f"{low[1]} pile"))
+        dense = self.failure(terry("3 pile every 3", tex=150, ends="8/cm", picks="21/cm"))
+        picks = re.search(r"no room: .*`([0-9.]+/cm)` of the weft", dense)
+        self.assertIsNotNone(picks, dense)
+        self.is_sound(terry("3 pile every 3", tex=150, ends="8/cm", picks=picks[1]))
 
 
 if __name__ == "__main__":

@@ -288,6 +288,15 @@ TEST(WovenPile, RefusedOnesAreBuiltWithTheirRemedies) {
   EXPECT_GT(plans_of(low).size(), 0U);
   weave_of(low).pile->height *= 0.97;
   refusal_of(low);
+
+  // Warp pile asks for picks, weft pile for ends that are further apart.
+  Fabric thick = with_pile(3.0);
+  thick.threads.back() = cotton("pile", 200);
+  weave_of(thick).weft.pitch = 0.45;
+  const Message no_room = refusal_of(thick);
+  EXPECT_EQ(no_room.place.line, 8);
+  weave_of(thick).weft.pitch = number_in(no_room.text, "`pitch ([0-9.]+)` of the weft");
+  EXPECT_GT(plans_of(thick).size(), 0U) << no_room.text;
 }
 
 TEST(WovenPile, ItsThreadIsThatOfTheWarpWhereItNamesNone) {
