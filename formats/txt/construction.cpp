@@ -148,7 +148,7 @@ constexpr long long most_shafts_checked = 100;
 // A weave's statements, and the places of those that only the whole block can validate: of its draft, which
 // is required or forbidden, and of its state, which conflicts with other statements.
 struct WeaveBlock : Weave {
-  std::optional<Spot> draft_place, state_place, levels_place, fraction_place;
+  std::optional<Spot> draft_place, state_place, levels_place, fraction_place, pile_place;
   std::vector<Spot> stacked_warps;
 };
 
@@ -343,29 +343,45 @@ void read_crimp(Parser& p, WeaveBlock& weave, std::string_view) {
 }
 
 void read_fraction(Parser& p, WeaveBlock& weave, std::string_view) {
-  weave.fraction_place = p.statement();
+  weave.plates.emplace_back("fraction", p.statement());
   const auto fraction = p.number("the fibre fraction of the cloth");
   if (fraction && !(*fraction > 0.0 && *fraction < mechanics::densest_packing))
-    p.error(p.last(), fmt::format("a fibre fraction of the cloth lies between 0 and {:.3f} (round fibres, packed "
-                                  "hexagonally)",
-                                  mechanics::densest_packing));
+    p.error(p.last(),
+            fmt::format("a fibre fraction of the cloth lies between 0 and {:.3f} (round fibres, packed "
+                        "hexagonally)",
+                        mechanics::densest_packing));
   if (p.finish()) weave.fraction = *fraction;
 }
 
+// compact P [MPa]
+void read_compact(Parser& p, WeaveBlock& weave, std::string_view) {
+  weave.plates.emplace_back("compact", p.statement());
+  const auto pressure = p.positive("the pressure in MPa", Measure::modulus);
+  if (p.more() && same_word(p.peek_word(), "MPa")) p.expect("MPa");
+  if (p.finish()) weave.pressure = *pressure;
+}
+
 // Reports what leaves nothing to be pressed.
-void check_fraction(Parser& p, const WeaveBlock& weave) {
-  if (!weave.fraction) return;
-  const auto report = [&](bool is, std::string_view word, std::string_view why) {
-    if (is)
-      p.error(*weave.fraction_place,
-              fmt::format("'fraction' and '{0}' exclude each other, {1}: leave out one of them", word, why));
-  };
-  report(weave.thickness.has_value(), "thickness", "since each says how far apart the plates are");
-  report(weave.profile.has_value(), "profile", "since only yarns whose path is free are pressed");
-  report(!weave.binders.empty(), "binder", "since only yarns that interlace are pressed");
-  report(weave.draft.form == Draft::Form::leno, "draft leno", "since a leno is not pressed");
-  report(weave.pucker.has_value(), "pucker", "since plates leave no waves");
-  report(weave.pile || weave.draft.has_pile(), "pile", "since plates leave no pile upright");
+void check_plates(Parser& p, const WeaveBlock& weave) {
+  for (const auto& [own, place] : weave.plates) {
+    const auto report = [&, &word = own, &spot = place](bool is, std::string_view other,
+                                                        std::string_view why) {
+      if (is)
+        p.error(spot, fmt::format("'{0}' and '{1}' exclude each other, {2}: leave out one of them", word,
+                                  other, why));
+    };
+    report(weave.thickness.has_value(), "thickness", "since both say how far apart the plates are");
+    report(weave.profile.has_value(), "profile", "since only yarns whose path is free are pressed");
+    report(!weave.binders.empty(), "binder", "since only yarns that interlace are pressed");
+    report(weave.draft.form == Draft::Form::leno, "draft leno", "since a leno is not pressed");
+    report(weave.pucker.has_value(), "pucker", "since plates leave no waves");
+    report(weave.pile || weave.draft.has_pile(), "pile", "since plates leave no pile upright");
+  }
+  if (weave.plates.size() > 1)
+    p.error(weave.plates.back().second,
+            "'fraction' and 'compact' exclude each other, since both say how far apart the plates are: leave "
+            "out one "
+            "of them");
 }
 
 void read_binder(Parser& p, WeaveBlock& weave, std::string_view) {
@@ -447,6 +463,7 @@ void check_levels(Parser& p, const WeaveBlock& weave) {
 // pile H [THREAD] [every N] [face | back | both] [cut]
 void read_warp_pile(Parser& p, WeaveBlock& weave, std::string_view) {
   fabric::WarpPile pile;
+  weave.pile_place = p.statement();
   pile.place = p.statement().place();
   pile.picks = 0;
   pile.height = p.positive("the height of the pile", Measure::length).value_or(1.0);
@@ -472,28 +489,34 @@ void read_warp_pile(Parser& p, WeaveBlock& weave, std::string_view) {
   weave.pile = std::move(pile);
 }
 
-// Three picks from loop to loop, as most terry has, or as many as the picks can be divided by.
-void check_pile(Parser& p, WeaveBlock& weave, const Spot& opened) {
+// Reports statements of a weave that its pile excludes, and a pile without a thread of its own.
+void check_pile(Parser& p, WeaveBlock& weave) {
   if (!weave.pile && !weave.draft.has_pile()) return;
+  const Spot place = weave.pile ? *weave.pile_place : *weave.draft_place;
   const std::string what =
-      weave.pile ? "a pile" : fmt::format("a {}", word_of(draft_words, weave.draft.form));
-  if (weave.profile || weave.pucker || weave.layers || weave.spacing || !weave.binders.empty() ||
-      weave.levels_place || weave.draft.form == Draft::Form::leno)
-    p.error(opened,
-            fmt::format("{} goes with one layer of interlaced yarns in equilibrium: leave out profile, "
-                        "spacing, pucker, layers, levels, binder, and a leno",
-                        what));
-  if (weave.pile && weave.draft.has_pile())
-    p.error(opened, fmt::format("{} has a pile of its picks: leave out 'pile', or use another draft", what));
+      weave.pile ? "pile" : fmt::format("draft {}", word_of(draft_words, weave.draft.form));
+  const auto report = [&](bool is, std::string_view word, std::string_view why) {
+    if (is)
+      p.error(place,
+              fmt::format("'{}' and '{}' exclude each other, {}: leave out one of them", what, word, why));
+  };
+  report(weave.profile.has_value(), "profile", "since pile rises out of a ground whose paths are free");
+  report(weave.spacing.has_value(), "spacing", "since pile rises between picks or ends at even pitches");
+  report(weave.pucker.has_value(), "pucker", "since pile rises out of a level ground");
+  report(weave.layers.has_value(), "layers", "since a cloth of pile is one layer");
+  report(weave.levels_place.has_value(), "levels", "since a cloth of pile is one layer");
+  report(weave.draft.form == Draft::Form::leno, "draft leno", "since ends of pile stay beside the warps");
+  report(weave.pile && weave.draft.has_pile(),
+         fmt::format("draft {}", word_of(draft_words, weave.draft.form)), "since its picks are pile");
   const std::vector<std::string>& threads = weave.weft.threads;
   if (weave.draft.has_pile() && std::all_of(threads.begin(), threads.end(), [&](const std::string& thread) {
         return thread == threads.front();
       }))
-    p.error(opened,
-            fmt::format("the picks of {} are ground and pile in turn, the pile of a thread of its own: write "
-                        "'weft {},2NAME ...' for one ground pick and two pile picks",
-                        what, threads.empty() ? "GROUND" : threads.front()));
+    p.error(place, fmt::format("the picks of '{}' are ground and pile in turn, the pile of a thread of its "
+                               "own: write 'weft {},2NAME ...' for one ground pick and two pile picks",
+                               what, threads.empty() ? "GROUND" : threads.front()));
   if (!weave.pile || weave.pile->picks > 0) return;
+  // As most terry has, or as many as the picks can be divided by.
   weave.pile->picks = 3;
   for (const int picks : {3, 4, 5})
     if (weave.weft.count % picks == 0) {
@@ -871,6 +894,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"pucker", read_pucker},
                                         {"thickness", into(&Weave::thickness, a_length("the thickness"))},
                                         {"fraction", read_fraction},
+                                        {"compact", read_compact},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any},
                                         {"levels", read_levels, Times::any},
@@ -909,9 +933,9 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(opened,
               "with a profile its formula makes the thickness: leave out the profile, or the thickness");
     check_state(p, weave);
-    check_fraction(p, weave);
+    check_plates(p, weave);
     check_levels(p, weave);
-    check_pile(p, weave, opened);
+    check_pile(p, weave);
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

@@ -237,6 +237,11 @@ constexpr std::array lessons = {
     Lesson{"fraction", "weave", "fraction F",
            "Plates press the cloth, each of its layers alike, until fibres fill F of it; 0 < F < 0.907.",
            "fraction 0.55", "", "as much as they fill by themselves"},
+    Lesson{"compact", "weave", "compact P [MPa]",
+           "Plates press the cloth, each of its layers alike, with this pressure, MPa. Its threads have "
+           "filaments, a "
+           "linear density, and a material with an elastic modulus.",
+           "compact 0.1"},
     Lesson{
         "layers", "weave", "layers N",
         "N cloths on each other; with `profile straight` N layers of warps, with `levels` N layers of wefts.",

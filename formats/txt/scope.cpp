@@ -42,7 +42,7 @@ constexpr std::array keywords = {
     "shear",     "repeat",     "margin",   "substrate", "points",       "helix",       "pucker",
     "mandrel",   "unit",       "crossing", "shape",     "transfer",     "drop",        "interface",
     "stiffness", "strength",   "energy",   "planar",    "fill",         "colour",      "state",
-    "levels",    "fraction"};
+    "levels",    "fraction",   "compact"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');

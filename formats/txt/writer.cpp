@@ -344,6 +344,7 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   }
   if (weave.thickness) out.line(1, "thickness").value(*weave.thickness);
   if (weave.fraction) out.line(1, "fraction").value(*weave.fraction);
+  if (weave.pressure) out.line(1, "compact").value(*weave.pressure);
   if (weave.layers) out.line(1, "layers").value(*weave.layers);
   for (const fabric::Binder& binder : weave.binders) {
     out.line(1, "binder").name(binder.thread).word("every").value(binder.every);

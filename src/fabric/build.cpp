@@ -188,7 +188,8 @@ namespace {
 std::optional<double> thickness_in_cloth(const Fabric& fabric, const Weave& weave) {
   const Result<System> warp = system_of(fabric, weave.warp), weft = system_of(fabric, weave.weft);
   if (!warp || !weft) return std::nullopt;
-  return std::min(thickness_in_cloth(*warp, fabric.units, true), thickness_in_cloth(*weft, fabric.units, false));
+  return std::min(thickness_in_cloth(*warp, fabric.units, true),
+                  thickness_in_cloth(*weft, fabric.units, false));
 }
 
 // Blocks that were looked into are not looked into again. `is_in_cloth`: of weaves as thick as they lie.

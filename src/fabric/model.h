@@ -320,7 +320,10 @@ struct Weave {
   std::optional<double> amplitude;  // sine: of both systems, file units
   std::optional<double> crimp;      // the warp's share of the crimp height, 0 .. 1
   std::optional<double> thickness;  // of the cloth (of a layer), at most; file units
-  std::optional<double> fraction;   // of fibre over the whole cloth, between plates that press it to it
+  // Between plates that press each layer: until fibres are this fraction of the cloth, or with a pressure,
+  // MPa.
+  std::optional<double> fraction, pressure;
+  [[nodiscard]] bool is_pressed() const { return fraction || pressure; }
   enum class Spacing { even, relaxed };
   std::optional<Spacing> spacing;
   // Equilibrium of the cloth under the tensions of its two systems. loom: those of weaving, wefts nearly

@@ -38,6 +38,7 @@ struct PileReport {
   double height = 0;  // out of the ground; of cut weft pile the largest
   double ground = 0;  // thickness of the cloth without it
   std::optional<double> wales_per_mm;
+  std::optional<double> ends_per_mm;  // of warp pile
 };
 
 // The yarns of one fabric by construction, known by number and name before any of them is computed, and

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 
@@ -106,16 +108,47 @@ std::vector<double> turns_along(int axis, const std::vector<nurbs::Samples>& sam
   return turns;
 }
 
-// By what share of a repeat, from -1/2 to 1/2, a face at 0 moves to keep clear of the turns.
-double move_off_turns(const std::vector<double>& turns, double clear) {
-  if (turns.empty() || (turns.front() >= clear && turns.back() <= 1.0 - clear)) return 0.0;
+// From low to high, as shares of a repeat.
+using Interval = std::array<double, 2>;
+
+// What the ends of yarns within the cell fill along an axis, with a margin.
+std::vector<Interval> ends_along(int axis, const std::vector<nurbs::Samples>& samples, double low,
+                                 double repeat, double clear,
+                                 const std::function<bool(const Vec3&)>& is_in_cell) {
+  std::vector<Interval> ends;
+  for (const nurbs::Samples& grid : samples)
+    for (const std::size_t v : {std::size_t{0}, grid.vs.size() - 1}) {
+      Box3 end;
+      for (std::size_t u = 0; u + 1 < grid.us.size(); ++u) end.extend(grid.at(u, v));
+      if (is_in_cell(end.center()))
+        ends.push_back({(end.min()[axis] - low) / repeat - clear, (end.max()[axis] - low) / repeat + clear});
+    }
+  return ends;
+}
+
+bool is_in_one(const std::vector<Interval>& intervals, double share) {
+  return std::any_of(intervals.begin(), intervals.end(), [&](const Interval& interval) {
+    return std::ceil(interval[0] - share) <= interval[1] - share;
+  });
+}
+
+// By what share of a repeat, from -1/2 to 1/2, a face at 0 moves to keep clear of turns and, where there is
+// such a place, of ends.
+double move_off_turns(const std::vector<double>& turns, const std::vector<Interval>& ends, double clear) {
+  if (turns.empty() || (turns.front() >= clear && turns.back() <= 1.0 - clear && !is_in_one(ends, 0.0)))
+    return 0.0;
   double widest = 0.0, middle = 0.0;
+  bool is_free = false;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const double next = i + 1 < turns.size() ? turns[i + 1] : turns.front() + 1.0;
     constexpr double alike = 1e-6;  // of gaps that are alike the first
-    if (next - turns[i] <= widest + alike) continue;
-    widest = next - turns[i];
-    middle = 0.5 * (turns[i] + next);
+    const double width = next - turns[i], here = 0.5 * (turns[i] + next);
+    const bool is_here_free = width >= 2.0 * clear && !is_in_one(ends, here);
+    if (is_free && !is_here_free) continue;
+    if (is_free == is_here_free && width <= widest + alike) continue;
+    widest = width;
+    middle = here;
+    is_free = is_here_free;
   }
   return middle - std::round(middle);
 }
@@ -182,7 +215,7 @@ class Settling {
     return true;
   }
 
-  // What is left to find: where no yarn runs along a face, and how far they reach.
+  // What is left to find: where no yarn runs along a face or ends in one, and how far they reach.
   void fit(Cell& cell, const std::vector<yarn::Body>& bodies, const Vec3& lengths, const Repeat& repeat) {
     std::vector<nurbs::Samples> samples;
     Box3 yarns;
@@ -202,8 +235,11 @@ class Settling {
       }
       const double own = repeat[static_cast<std::size_t>(axis)].value_or(0.0);
       if (own == 0.0) continue;
-      const double share =
-          move_off_turns(turns_along(axis, samples, cell.low[axis], own), clear_of_turns * thinnest / own);
+      const double clear = clear_of_turns * thinnest / own;
+      const std::vector<Interval> ends =
+          ends_along(axis, samples, cell.low[axis], own, clear,
+                     [&](const Vec3& p) { return is_beside(p, cell, lengths); });
+      const double share = move_off_turns(turns_along(axis, samples, cell.low[axis], own), ends, clear);
       cell.low[axis] += share * own;
       cell.high[axis] = cell.low[axis] + lengths[axis];
     }

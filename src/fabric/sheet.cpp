@@ -558,6 +558,9 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
   sheet.file = fabric.file;
   sheet.equilibrium = cloth.equilibrium();
   sheet.pile = cloth.pile();
+  if (sheet.pile && sheet.pile->ends_per_mm)
+    for (const SystemSheet& system : sheet.systems)
+      if (system.name == "pile") sheet.pile_ratio = system.length / (1e3 * *sheet.pile->ends_per_mm);
   return sheet;
 }
 

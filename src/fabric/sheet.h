@@ -24,6 +24,7 @@
 //   braid angle    of a tube, by the turns about its axis at the radius of its middle surface; of a planar
 //                  braid against x. A tube's cover: with f the share that the yarns of one direction fill,
 //                  2 f - f^2 (Brunnschweiler 1954)
+//   pile ratio     of warp pile: length of a pile end by the cloth's length
 //   twist factor   turns a metre times the root of tex; and turns an inch by the root of the cotton count
 #pragma once
 
@@ -80,6 +81,7 @@ struct Sheet {
   std::vector<ThreadSheet> threads;
   std::optional<EquilibriumReport> equilibrium;
   std::optional<PileReport> pile;
+  std::optional<double> pile_ratio;  // of warp pile
   [[nodiscard]] std::optional<double> porosity() const {
     return fibre_fraction > 0 ? std::optional(1 - fibre_fraction) : std::nullopt;
   }

@@ -80,16 +80,15 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
       warp_(std::move(warp)),
       weft_(std::move(weft)),
       has_only_formula_(
-          !weave.state && !weave.fraction && !is_stacked() && !has_pile() &&
+          !weave.state && !weave.is_pressed() && !is_stacked() && !has_pile() &&
           (options.as_published || weave.profile || weave.amplitude || any_section(is_polygon))),
-      has_formula_(!weave.state && !weave.fraction && !is_stacked() && !has_pile() &&
+      has_formula_(!weave.state && !weave.is_pressed() && !is_stacked() && !has_pile() &&
                    (has_only_formula_ || weave.pucker || any_section(has_form))),
       options_(options) {
   const bool has_cell = fabric.cell.has_value();
   // Both tubes are modelled within the tolerance.
   clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
-  if (!as_published_)
-    clearance_ += options.gap > 0.0 ? options.gap : clearance_share * thinnest();
+  if (!as_published_) clearance_ += options.gap > 0.0 ? options.gap : clearance_share * thinnest();
   const Cell cell = fabric.cell.value_or(Cell{});
   const Box3 box = cell.shape().bounds();
   along_x_ = reach_over(weft_, has_cell, box.min().x(), box.max().x());
@@ -98,8 +97,9 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
 
 // Thickness of the thinner system; tows between plates lie flat.
 double WeaveConstruction::thinnest() const {
-  if (!weave_.fraction) return std::min(warp_.thickest, weft_.thickest);
-  return std::min(thickness_in_cloth(warp_, fabric_.units, true), thickness_in_cloth(weft_, fabric_.units, false));
+  if (!weave_.is_pressed()) return std::min(warp_.thickest, weft_.thickest);
+  return std::min(thickness_in_cloth(warp_, fabric_.units, true),
+                  thickness_in_cloth(weft_, fabric_.units, false));
 }
 
 void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, const Row& row) {
@@ -243,11 +243,11 @@ Status WeaveConstruction::prepare_heights(Diagnostics& diagnostics) {
     if (found || found.error().kind != Kind::limit) return found;
     const std::string text = fmt::format("no equilibrium of the cloth is looked for: {}", found.error().text);
     if (has_pile()) return error(Kind::limit, text + ", which a pile needs").placed(weave_.place);
-    if (weave_.state || weave_.fraction || is_stacked())
+    if (weave_.state || weave_.is_pressed() || is_stacked())
       return error(Kind::limit,
-                   text + (is_stacked()      ? "; a shorter repeat has fewer"
-                           : weave_.fraction ? "; leave out 'fraction', or shorten the repeat"
-                                             : "; without 'state' a formula gives heights and sections"))
+                   text + (is_stacked()          ? "; a shorter repeat has fewer"
+                           : weave_.is_pressed() ? "; a shorter repeat has fewer"
+                                                 : "; without 'state' a formula gives heights and sections"))
           .placed(weave_.place);
     has_formula_ = has_only_formula_ = true;
     space_evenly(weft_);

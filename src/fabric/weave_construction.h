@@ -143,7 +143,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] std::array<long long, 2> pile_repeat() const;  // ends, picks
   [[nodiscard]] bool pile_fits(double height);
   void measure_ground();
-  [[nodiscard]] std::optional<double> pitch_for_pile() const;
+  [[nodiscard]] std::optional<std::string> pitch_for_pile() const;
   [[nodiscard]] Message refused_pile();
   Status prepare_pile(Diagnostics& diagnostics);
   [[nodiscard]] std::string pile_name(const PileYarn& yarn) const;

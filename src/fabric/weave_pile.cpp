@@ -15,6 +15,7 @@
 #include "core/wrapped.h"
 #include "fabric/clearance.h"
 #include "fabric/weave_construction.h"
+#include "fabric/weave_remedies.h"
 #include "nurbs/measure.h"
 #include "nurbs/roots.h"
 
@@ -376,13 +377,14 @@ void WeaveConstruction::measure_ground() {
     }
 }
 
-// Of the crossed system, in steps of 2 %, with which the pile is built.
-std::optional<double> WeaveConstruction::pitch_for_pile() const {
+// Of the crossed system, in steps of 2 %, with which the pile is built; in the form of the text.
+std::optional<std::string> WeaveConstruction::pitch_for_pile() const {
   Weave wider = weave_;
   WeaveSystem& system = weave_.pile ? wider.weft : wider.warp;
   const double pitch = system.pitch;
+  const auto wider_by = [&](int steps) { return pitch * std::pow(pitch_step, steps); };
   const auto fits = [&](int steps) {
-    system.pitch = rounded_up(pitch * std::pow(pitch_step, steps));
+    system.pitch = as_shown(system, wider_by(steps), fabric_.units);
     Diagnostics own;
     Result<std::unique_ptr<WeaveConstruction>> made = make(fabric_, wider, options_);
     if (!made) return false;
@@ -399,7 +401,7 @@ std::optional<double> WeaveConstruction::pitch_for_pile() const {
     const int middle = (close + wide) / 2;
     (fits(middle) ? wide : close) = middle;
   }
-  return rounded_up(pitch * std::pow(pitch_step, wide));
+  return shown_pitch(system, wider_by(wide), fabric_.units);
 }
 
 Message WeaveConstruction::refused_pile() {
@@ -425,9 +427,8 @@ Message WeaveConstruction::refused_pile() {
       fmt::format("the pile has no room: its {} overlap where they rise between the yarns of the {}",
                   weave_.pile && !weave_.pile->is_cut ? "loops" : "tufts", crossed);
   if (seeks_remedies_) {
-    const std::optional<double> pitch = pitch_for_pile();
-    text += pitch ? fmt::format("; a pitch of {:.6g} {} of the {} gives it, and so do thinner threads",
-                                *pitch, unit, crossed)
+    const std::optional<std::string> pitch = pitch_for_pile();
+    text += pitch ? fmt::format("; {} of the {} gives it, and so do thinner threads", *pitch, crossed)
                   : "; thinner threads give it";
   }
   return refuse(text);
@@ -503,7 +504,8 @@ Status WeaveConstruction::prepare_pile(Diagnostics& diagnostics) {
 std::optional<PileReport> WeaveConstruction::pile() const {
   if (!has_pile()) return std::nullopt;
   const double mm = millimetres_per(fabric_.units);
-  PileReport report{mm * pile_height_, mm * (ground_top_ - ground_bottom_), std::nullopt};
+  PileReport report{mm * pile_height_, mm * (ground_top_ - ground_bottom_), {}, {}};
+  if (weave_.pile) report.ends_per_mm = 1.0 / (mm * weave_.warp.pitch);
   if (weave_.draft.form == Draft::Form::corduroy)
     report.wales_per_mm = 1.0 / (mm * weave_.draft.a * warp_.text->pitch);
   return report;

@@ -69,22 +69,6 @@ std::string shown(const LinearDensity& density) {
                      density.is_indirect() ? rounded_up(density.value) : rounded_down(density.value));
 }
 
-// The pitch that shown_pitch() gives.
-double as_shown(const WeaveSystem& system, double pitch, Unit units) {
-  const double mm = millimetres_per(units);
-  const int ends = system.ends_of_one;
-  if (!system.counted_on) return rounded_up(pitch * ends) / ends;
-  return *system.counted_on / rounded_down(*system.counted_on / (pitch * ends * mm)) / mm / ends;
-}
-
-// In the form of the text: a pitch (file units), or yarns per cm or inch. Not closer than it is.
-std::string shown_pitch(const WeaveSystem& system, double pitch, Unit units) {
-  pitch *= system.ends_of_one;
-  if (!system.counted_on) return fmt::format("`pitch {:.6g}`", rounded_up(pitch));
-  return fmt::format("`{:.6g}/{}`", rounded_down(*system.counted_on / (pitch * millimetres_per(units))),
-                     *system.counted_on == 10 ? "cm" : "in");
-}
-
 std::string thinner_threads(const LooseCloth& cloth, double by) {
   std::string text;
   std::set<const Thread*> seen;
@@ -108,6 +92,20 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
 }
 
 }  // namespace
+
+double as_shown(const WeaveSystem& system, double pitch, Unit units) {
+  const double mm = millimetres_per(units);
+  const int ends = system.ends_of_one;
+  if (!system.counted_on) return rounded_up(pitch * ends) / ends;
+  return *system.counted_on / rounded_down(*system.counted_on / (pitch * ends * mm)) / mm / ends;
+}
+
+std::string shown_pitch(const WeaveSystem& system, double pitch, Unit units) {
+  pitch *= system.ends_of_one;
+  if (!system.counted_on) return fmt::format("`pitch {:.6g}`", rounded_up(pitch));
+  return fmt::format("`{:.6g}/{}`", rounded_down(*system.counted_on / (pitch * millimetres_per(units))),
+                     *system.counted_on == 10 ? "cm" : "in");
+}
 
 std::string remedies_for(const LooseCloth& cloth, const HasRoom& tried) {
   const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;

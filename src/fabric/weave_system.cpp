@@ -109,7 +109,8 @@ double thickness_in_cloth(const System& system, Unit units, bool is_warp) {
     const Result<std::optional<double>> twist = twist_factor_of(*woven.thread, units, is_warp);
     const Thread& thread = *woven.thread;
     const bool is_flat = twist && *twist && **twist == 0.0 && !thread.section && !thread.diameter;
-    const double flat = yarn::area(woven.section, woven.size) / (0.25 * std::numbers::pi * system.text->pitch);
+    const double flat =
+        yarn::area(woven.section, woven.size) / (0.25 * std::numbers::pi * system.text->pitch);
     thickest = std::max(thickest, is_flat ? std::min(flat, woven.size.height) : woven.size.height);
   }
   return thickest;

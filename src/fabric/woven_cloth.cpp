@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -62,6 +63,40 @@ Result<mechanics::WovenYarn> woven_yarn(const WovenThread& woven, Unit units, bo
     made.fibre_area = made.packing * area;
   }
   return made;
+}
+
+double axial_modulus(const Material& material) {  // MPa; 0: not known
+  if (const auto* isotropic = std::get_if<IsotropicElastic>(&material.elastic)) return isotropic->modulus;
+  if (const auto* transverse = std::get_if<TransverseElastic>(&material.elastic)) return transverse->e1;
+  return 0.0;
+}
+
+// Tension of a finished cloth, N, of which the mechanics' bending stiffness is that of all fibres bent one by
+// one: E A^2 / (4 pi n) of a yarn with n of them. Errors: what is not known of a thread (malformed).
+Result<double> tension_of(const ClothText& text, const mechanics::WovenCloth& cloth) {
+  double stiffness = 0.0, areas = 0.0;
+  for (const bool is_weft : {false, true}) {
+    const System& system = *(is_weft ? text.weft : text.warp);
+    for (const WovenThread& woven : system.threads) {
+      const Thread& thread = *woven.thread;
+      const Material* const material =
+          thread.material ? text.fabric->find_material_anywhere(*thread.material) : nullptr;
+      const double modulus = material == nullptr ? 0.0 : axial_modulus(*material);
+      if (modulus <= 0.0 || !thread.filaments || !thread.linear_density || !thread.fibre_density())
+        return error(Kind::malformed,
+                     fmt::format(
+                         "how far a pressure presses thread '{}' follows from the bending of its fibres: it "
+                         "needs 'filaments', a linear density, and a material with an elastic modulus; or "
+                         "say 'fraction' in the place of 'compact'",
+                         thread.name))
+            .placed(thread.place);
+      const double area = thread.linear_density->tex() / (1000.0 * *thread.fibre_density());  // mm2
+      const double weight = 1.0 / static_cast<double>(system.threads.size());
+      stiffness += weight * modulus * area * area / (4.0 * std::numbers::pi * *thread.filaments);
+      areas += weight * area;
+    }
+  }
+  return stiffness / (cloth.constants.bending * areas);
 }
 
 std::vector<double> gaps_of(const System& system, int count) {
@@ -162,10 +197,11 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
     constexpr double exactness = 1e-7;
     constexpr int most_rounds = 20;
     if (made.fraction() > *fraction)
-      return error(Kind::geometry,
-                   fmt::format("the cloth has a fibre fraction of {:.4g} by itself, more than {:.4g}: leave out "
-                               "the fraction, or open the cloth",
-                               made.fraction(), *fraction));
+      return error(
+          Kind::geometry,
+          fmt::format("the cloth has a fibre fraction of {:.4g} by itself, more than {:.4g}: leave out "
+                      "the fraction, or open the cloth",
+                      made.fraction(), *fraction));
     for (int round = 0; round < most_rounds && std::abs(made.fraction() / *fraction - 1.0) > exactness;
          ++round) {
       cloth->thickness = made.thickness_for(*fraction);
@@ -173,18 +209,27 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
       if (made.is_too_thick()) break;
     }
   }
+  if (text.weave->pressure) {
+    const Result<double> tension = tension_of(text, *cloth);
+    if (!tension) return tension.error();
+    const double mm = millimetres_per(text.fabric->units), area = mechanics::mean_area(*cloth) * mm * mm;
+    return ClothInEquilibrium(text, *cloth,
+                              made.equilibrium_.pressed_with(*text.weave->pressure * area / *tension));
+  }
   if (!made.is_too_thick()) return made;
   const std::string_view unit = name_of(text.fabric->units);
   if (!text.weave->fraction)
-    return error(Kind::geometry,
-                 fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is {:.6g} {} at the "
-                             "least",
-                             *cloth->thickness, unit, rounded_up(made.equilibrium_.thickness()), unit));
-  return error(Kind::geometry,
-               fmt::format("the yarns of this cloth do not fill {:.4g} of it with fibre: {:.4g} at the most, at "
-                           "packing fractions of {:.2f} (warp) and {:.2f} (weft)",
-                           *text.weave->fraction, rounded_down(made.fraction()), made.report().systems[0].packing,
-                           made.report().systems[1].packing));
+    return error(
+        Kind::geometry,
+        fmt::format("no cloth of these yarns is {:.6g} {} thick: in equilibrium it is {:.6g} {} at the "
+                    "least",
+                    *cloth->thickness, unit, rounded_up(made.equilibrium_.thickness()), unit));
+  return error(
+      Kind::geometry,
+      fmt::format("the yarns of this cloth do not fill {:.4g} of it with fibre: {:.4g} at the most, at "
+                  "packing fractions of {:.2f} (warp) and {:.2f} (weft)",
+                  *text.weave->fraction, rounded_down(made.fraction()), made.report().systems[0].packing,
+                  made.report().systems[1].packing));
 }
 
 bool ClothInEquilibrium::is_too_thick() const {

@@ -38,7 +38,7 @@ struct ClothYarn {
 class ClothInEquilibrium {
  public:
   // Errors: of woven_cloth; of find_equilibrium, at the weave; a thickness or fraction that it does not have
-  // (geometry, without a place).
+  // (geometry, without a place); a pressure where a thread does not say what its fibres are (malformed).
   static Result<ClothInEquilibrium> find(const ClothText& text);
 
   // The centre line of a yarn from one place along it to another one, in its own plane (x: along, z), with

@@ -20,13 +20,6 @@ using Eigen::VectorXd;
 // Shares of the waves from which a search begins.
 constexpr std::array<double, 3> warp_shares = {0.5, 0.8, 0.2};
 
-double mean_area(const WovenCloth& cloth) {
-  double sum = 0.0;
-  for (const auto* yarns : {&cloth.warps, &cloth.wefts})
-    for (const WovenYarn& yarn : *yarns) sum += yarn.fibre_area / static_cast<double>(2 * yarns->size());
-  return sum;
-}
-
 WovenCloth scaled(WovenCloth cloth, double by) {
   for (auto* yarns : {&cloth.warps, &cloth.wefts})
     for (WovenYarn& yarn : *yarns) yarn.fibre_area *= by * by;
@@ -113,6 +106,13 @@ Result<Minimum> least_minimum(WovenProblem& problem, const std::vector<VectorXd>
 
 }  // namespace
 
+double mean_area(const WovenCloth& cloth) {
+  double sum = 0.0;
+  for (const auto* yarns : {&cloth.warps, &cloth.wefts})
+    for (const WovenYarn& yarn : *yarns) sum += yarn.fibre_area / static_cast<double>(2 * yarns->size());
+  return sum;
+}
+
 double WovenEquilibrium::control_height(WovenSystem system, int yarn, int knot) const {
   return scale_ * minimum_.x[problem_->height(system, yarn, knot)];
 }
@@ -150,6 +150,27 @@ WovenEquilibrium WovenEquilibrium::pressed(double thickness) const {
     at.minimum_ = std::move(*found);
   }
   return at;
+}
+
+WovenEquilibrium WovenEquilibrium::pressed_with(double pressure) const {
+  constexpr double step = 0.97, exactness = 1e-6;
+  WovenEquilibrium low = *this;  // pressed with less
+  for (;;) {
+    WovenEquilibrium next = low.pressed(step * low.thickness());
+    if (next.thickness() > (step + exactness) * low.thickness()) return next;  // as thin as it can be
+    if (next.pressure() >= pressure) break;
+    low = std::move(next);
+  }
+  double from = step * low.thickness();
+  while (low.thickness() - from > exactness * from) {
+    const double middle = 0.5 * (from + low.thickness());
+    WovenEquilibrium next = low.pressed(middle);
+    if (next.pressure() >= pressure)
+      from = middle;
+    else
+      low = std::move(next);
+  }
+  return low;
 }
 
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {

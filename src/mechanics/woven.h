@@ -32,6 +32,11 @@ class WovenEquilibrium {
   // Between plates this far apart (in the cloth's unit), or as far as they can be brought together, to 0.2 %;
   // itself where it is thinner.
   [[nodiscard]] WovenEquilibrium pressed(double thickness) const;
+  // Between plates that press with this pressure (see pressure()), to 1e-6 of the thickness; as far as they
+  // can be brought together where that needs less.
+  [[nodiscard]] WovenEquilibrium pressed_with(double pressure) const;
+  // Of the plates, over the tension of a finished cloth by the mean fibre area.
+  [[nodiscard]] double pressure() const { return problem_->pressure(minimum_); }
 
   // Distance of the plates that touch it, in the cloth's unit.
   [[nodiscard]] double thickness() const { return scale_ * problem_->thickness(minimum_.x); }

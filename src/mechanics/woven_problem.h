@@ -61,6 +61,9 @@ struct WovenEnergy {
   [[nodiscard]] double sum() const { return bending + tension + flattening + compaction; }
 };
 
+// Of fibres in a yarn, over both systems.
+double mean_area(const WovenCloth& cloth);
+
 // Of the crossings of the repeat.
 Partition classes_of(const WovenCloth& cloth, int max_classes);
 
@@ -74,6 +77,8 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] Eigen::VectorXd start(double warp_share) const;
   // Everything `by` times as high, and half of that made up for by width.
   [[nodiscard]] Eigen::VectorXd flattened(Eigen::VectorXd x, double by) const;
+  // Of the plates; `at`: a minimum of the inequalities that take part.
+  [[nodiscard]] double pressure(const Minimum& at) const;
   // Distance of the plates that touch the cloth.
   [[nodiscard]] double thickness(const Eigen::VectorXd& x) const;
   // Which inequalities take part: all that are not far from touching. True: one has entered that is violated

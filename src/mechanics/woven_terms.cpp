@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <type_traits>
 
 #include "mechanics/dual.h"
@@ -243,6 +244,21 @@ double WovenProblem::thickness(const VectorXd& x) const {
   for (const Fold& at : folds_)
     half = std::max(half, at.side * values[at.station][z] + values[at.station][half_height]);
   return 2.0 * half;
+}
+
+// The force is the derivative of the energy by the distance of the plates, of which each inequality has half.
+double WovenProblem::pressure(const Minimum& at) const {
+  double force = 0.0;
+  Index row = 0;
+  for (std::size_t k = 0; k < is_active_.size(); ++k) {
+    if (is_active_[k] == 0) continue;
+    const bool is_bound = k >= packed_.size() && k < packed_.size() + bounds_.size();
+    if (is_bound && bounds_[k - packed_.size()].weights[z] != 0.0) force += 0.5 * at.multipliers[row];
+    ++row;
+  }
+  const double area = std::accumulate(cloth_.warp_gaps.begin(), cloth_.warp_gaps.end(), 0.0) *
+                      std::accumulate(cloth_.weft_gaps.begin(), cloth_.weft_gaps.end(), 0.0);
+  return force / (classes_.count() * area / (cloth_.columns() * cloth_.rows()));
 }
 
 double WovenProblem::crimp(WovenSystem system, const VectorXd& x) const {

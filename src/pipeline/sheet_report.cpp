@@ -99,6 +99,7 @@ Json sheet_json(const fabric::Sheet& sheet) {
   if (sheet.pile) {
     put("pile_height", sheet.pile->height);
     put("ground_thickness", sheet.pile->ground);
+    put("pile_ratio", sheet.pile_ratio);
     put("wales_per_cm", sheet.pile->wales_per_mm, per_cm);
   }
   put("repeat_x", sheet.repeat_x);
@@ -195,9 +196,12 @@ std::string sheet_text(const fabric::Sheet& sheet, std::string_view file) {
   if (sheet.linear_mass > 0) text += line("", with(sheet.linear_mass, "g/m"));
   text += line("thickness", with(sheet.thickness, "mm"));
   if (sheet.pile) {
-    text += line("without the pile", with(sheet.pile->ground, "mm"));
+    text += line("of the ground", with(sheet.pile->ground, "mm"));
     text += line("pile height", with(sheet.pile->height, "mm"));
-    if (sheet.pile->wales_per_mm) text += line("wales", with(per_cm * *sheet.pile->wales_per_mm, "per cm"));
+    if (sheet.pile_ratio) text += line("pile ratio", fmt::format("{:.4g}", *sheet.pile_ratio));
+    if (const auto& wales = sheet.pile->wales_per_mm)
+      text +=
+          line("wales", fmt::format("{:.4g} per cm, {:.4g} per inch", per_cm * *wales, per_inch * *wales));
   }
   if (sheet.braid_angle) text += line("braid angle", with(sheet.braid_angle, "degrees"));
   if (sheet.courses_per_mm)

@@ -78,6 +78,33 @@ def upside_down(column):
     return " , ".join(" ".join(map(str, warp)) for warp in reversed(warps))
 
 
+PILE = """fabric 1
+units {unit}
+thread ground
+  tex 50
+  material cotton
+end
+thread pile
+  tex {tex}
+  material cotton
+end
+weave
+  warp  {warp}
+  weft  {weft}
+{statements}end
+"""
+
+
+def terry(pile, unit="mm", tex=37, ends="13/cm", picks="18/cm", more="  draft plain\n"):
+    statements = f"{more}  pile {pile}\n"
+    return PILE.format(unit=unit, tex=tex, warp=f"ground 4 {ends}", weft=f"ground 12 {picks}", statements=statements)
+
+
+def weft_pile(draft, picks, unit="mm", tex=30, more=""):
+    weft = f"ground,2pile 12 {picks}/cm"
+    return PILE.format(unit=unit, tex=tex, warp="ground 12 20/cm", weft=weft, statements=f"  draft {draft}\n{more}")
+
+
 class Equilibrium(Case):
     def sheet(self, text):
         path = self.folder / "cloth.txt"
@@ -211,6 +238,52 @@ class Equilibrium(Case):
         self.is_sound(cotton(draft="plain", statement=f"  thickness {least}\n"))
         self.failure(cotton(draft="plain", statement=f"  thickness {0.97 * least}\n"))
 
+    def test_pile_is_sound(self):
+        for text in (
+            terry("3 pile every 3"),
+            terry("0.6 every 5 face"),
+            terry("2 pile every 4 both cut"),
+            terry("1.5 pile every 5 back cut", more="  draft twill 2/1\n  state loom\n"),
+            terry("4 pile", more="  draft plain\n  state relaxed\n"),
+            weft_pile("corduroy", 40),
+            weft_pile("corduroy 10", 30, more="  state loom\n"),
+            weft_pile("velveteen 4", 40),
+            weft_pile("velveteen 8", 25),
+        ):
+            self.is_sound(text)
+
+    def test_data_sheet_of_pile(self):
+        low, high = (self.sheet(terry(f"{height} pile every 3")) for height in (2, 5))
+        for height, sheet in ((2, low), (5, high)):
+            self.assertAlmostEqual(sheet["pile_height"], height, delta=1e-9)
+            # On both sides of the ground.
+            self.assertAlmostEqual(sheet["thickness"], 2 * height + sheet["ground_thickness"], delta=1e-3)
+            # 1300 ends a metre of 37 tex.
+            mass = 1300 * 37e-3 * sheet["pile_ratio"]
+            self.assertAlmostEqual(sheet["systems"]["pile"]["mass"] / mass, 1, delta=1e-6)
+        # A loop in three picks of 1/1.8 mm has two more legs of 3 mm.
+        self.assertAlmostEqual((high["pile_ratio"] - low["pile_ratio"]) / (2 * 3 / (3 / 1.8)), 1, delta=0.01)
+        self.assertAlmostEqual(low["ground_thickness"] / high["ground_thickness"], 1, delta=1e-9)
+        corduroy = self.sheet(weft_pile("corduroy 8", 40))
+        self.assertAlmostEqual(corduroy["wales_per_cm"], 20 / 8, delta=1e-9)
+        self.assertNotIn("pile_ratio", corduroy)
+
+    def test_pile_is_the_same_in_five_units(self):
+        for height, statements in ((2, " pile every 3"), (1.5, " pile every 4 cut")):
+            expected = self.sheet(terry(f"{height}{statements}"))
+            for unit, size in MILLIMETRES.items():
+                found = self.sheet(terry(f"{height / size!r}{statements}", unit))
+                for what in ("mass", "thickness", "ground_thickness", "pile_height", "pile_ratio"):
+                    self.assertLess(abs(found[what] / expected[what] - 1), 1e-6, (unit, what))
+
+    def test_remedies_of_pile_work(self):
+        low = re.search(r":15:3: error: .* lower .*: ([0-9.]+) mm at least", self.failure(terry("0.05 pile")))
+        self.is_sound(terry(f"{low[1]} pile"))
+        dense = self.failure(terry("3 pile every 3", tex=150, ends="8/cm", picks="21/cm"))
+        picks = re.search(r"no room: .*`([0-9.]+/cm)` of the weft", dense)
+        self.assertIsNotNone(picks, dense)
+        self.is_sound(terry("3 pile every 3", tex=150, ends="8/cm", picks=picks[1]))
+
     def test_fraction_of_fibre(self):
         """By mass, density and thickness; in two layers that are a clearance apart, in two units and two drafts."""
         for unit, draft in (("mm", "plain"), ("in", "twill 2/2")):
@@ -228,10 +301,30 @@ class Equilibrium(Case):
         self.is_sound(tows(statement=f"  fraction {largest}\n"))
         self.failure(tows(statement=f"  fraction {1.01 * largest}\n"))
 
-    def test_what_excludes_a_fraction(self):
-        for statement in ("thickness 0.2", "profile sine", "pile 3", "pucker tight 3 slack 6 ratio 1.08 every 12"):
-            said = self.failure(tows(statement=f"  fraction 0.6\n  {statement}\n"))
-            self.assertIn(":16:3: error: 'fraction' and '" + statement.split()[0] + "' exclude each other", said)
+    def test_pressure(self):
+        """The more pressure the more fibre; the same in inches; as a fraction of what it reaches."""
+        fractions = []
+        for pressure in (0.01, 0.1, 0.6):
+            cloth = self.sheet(tows(statement=f"  compact {pressure}\n"))
+            fractions.append(cloth["fibre_fraction"])
+            inches = self.sheet(tows(unit="in", statement=f"  compact {pressure} MPa\n"))
+            self.assertAlmostEqual(inches["thickness"] / cloth["thickness"], 1, delta=1e-5)
+            again = self.sheet(tows(statement=f"  fraction {cloth['fibre_fraction']!r}\n"))
+            self.assertAlmostEqual(again["thickness"] / cloth["thickness"], 1, delta=1e-3)
+        self.assertEqual(fractions, sorted(fractions))
+        # Woven carbon has about 50 to 56 % under a vacuum bag, and 55 to 62 % in an autoclave.
+        self.assertTrue(0.50 < fractions[1] < 0.56 < fractions[2] < 0.62, fractions)
+        said = self.failure(tows(statement="  compact 0.1\n").replace("  filaments 3000\n", ""))
+        self.assertRegex(said, r":6:1: error: how far a pressure presses thread 'tow' .* needs 'filaments'")
+
+    def test_what_excludes_plates(self):
+        for plates in ("fraction 0.6", "compact 0.1"):
+            own = plates.split()[0]
+            for other in ("thickness 0.2", "profile sine", "pile 3", "pucker tight 3 slack 6 ratio 1.08 every 12"):
+                said = self.failure(tows(statement=f"  {plates}\n  {other}\n"))
+                self.assertIn(f":16:3: error: '{own}' and '{other.split()[0]}' exclude each other", said)
+        said = self.failure(tows(statement="  fraction 0.6\n  compact 0.1\n"))
+        self.assertIn(":17:3: error: 'fraction' and 'compact' exclude each other", said)
         for value in ("0", "-1", "0.95", "60"):
             said = self.failure(tows(statement=f"  fraction {value}\n"))
             self.assertIn(":16:12: error: a fibre fraction of the cloth lies between 0 and 0.907", said)

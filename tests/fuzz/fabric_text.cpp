@@ -122,6 +122,17 @@ class Writer {
       line("end");
       return;
     }
+    if (choice(6) == 1) {
+      line(" draft plain\n pile {} {} every {} {} {}", widths(0.5, 6), one_of({"a", "b", ""}), 3 + choice(3),
+           one_of({"face", "back", "both"}), one_of({"", "cut"}));
+      line("end");
+      return;
+    }
+    if (choice(8) == 1) {
+      line(" draft {} {}", one_of({"corduroy", "velveteen"}), 4 + 2 * choice(3));
+      line("end");
+      return;
+    }
     if (choice(3) == 1) {
       const int width = 1 + choice(4);
       line(" draft");

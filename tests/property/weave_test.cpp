@@ -100,6 +100,11 @@ class Differences {
       look_at_binders(layers);
     } else if (!weave.columns.empty()) {
       look_at_columns(layers);
+    } else if (weave.pile) {
+      look_at_layer(1, 1);
+      look_at_warp_pile();
+    } else if (weave.draft.has_pile()) {
+      look_at_weft_pile();
     } else {
       for (int layer = 1; layer <= layers; ++layer) look_at_layer(layer, layers);
     }
@@ -180,6 +185,68 @@ class Differences {
           expect(below == levels[static_cast<std::size_t>(j - 1) % levels.size()],
                  warp.name + " at weft " + std::to_string(j));
         }
+    }
+  }
+
+  // Every place of a yarn of pile, of all of its tufts, over or under the one that it crosses at x (y).
+  struct Side {
+    bool is_over = false, is_under = false;
+  };
+  [[nodiscard]] Side side_of_pile(int number, int axis, const Vec3& crossed) const {
+    const std::string name = "pile_" + std::to_string(number), tuft = name + "_tuft_";
+    Side side;
+    for (const auto& [yarn_name, pile] : plans_)
+      if (yarn_name == name || yarn_name.starts_with(tuft))
+        for (int k = 0; k <= 2000; ++k) {
+          const Vec3 point = nurbs::evaluate(pile.line.curve, k / 2000.0) + pile.at;
+          if (std::abs(point[axis] - crossed[axis]) < 0.02 * weave_.weft.pitch)
+            (point.z() > crossed.z() ? side.is_over : side.is_under) = true;
+        }
+    return side;
+  }
+
+  // Bound by picks 1, 3, ... of every group, free over the last two of it at least.
+  void look_at_warp_pile() {
+    const fabric::WarpPile& pile = *weave_.pile;
+    for (int i = 1; i <= weave_.warp.count; ++i) {
+      const bool is_up = pile.side == fabric::WarpPile::Side::face ||
+                         (pile.side == fabric::WarpPile::Side::both && i % 2 == 1);
+      for (int j = 1; j <= weave_.weft.count; ++j) {
+        const int of_group = (j - 1) % pile.picks + 1;
+        const bool is_bound = of_group % 2 == 1 && of_group <= pile.picks - 2;
+        const YarnPlan& weft = plan(yarn("", "weft", j));
+        const double y = (i - 0.25) * weave_.warp.pitch;  // of the pile end
+        const Side side = side_of_pile(i, 0, place_at(weft, 1, y));
+        const std::string at = "pile " + std::to_string(i) + " x weft " + std::to_string(j);
+        expect(!(is_bound == is_up ? side.is_over : side.is_under), at);
+        if (is_bound) expect(side.is_over || side.is_under, at + " is not bound");
+      }
+    }
+  }
+
+  // The first thread's picks weave plain; pile picks are bound under ends of the middle of a wale, or every
+  // other one, in turn.
+  void look_at_weft_pile() {
+    const std::vector<std::string>& threads = weave_.weft.threads;
+    const int width = weave_.draft.a;
+    int ground = 0, pile = 0;
+    for (int j = 1; j <= weave_.weft.count; ++j) {
+      const bool is_ground = threads[static_cast<std::size_t>(j - 1) % threads.size()] == threads.front();
+      const int of_kind = ++(is_ground ? ground : pile);
+      const int binding = weave_.draft.form == Draft::Form::corduroy ? width / 2 + 1 - (of_kind - 1) % 2
+                                                                     : 2 * ((of_kind - 1) % (width / 2)) + 1;
+      for (int i = 1; i <= weave_.warp.count; ++i) {
+        const YarnPlan& warp = plan(yarn("", "warp", i));
+        const std::string at = warp.name + " x pick " + std::to_string(j);
+        if (is_ground) {
+          const WovenCrossing crossing = crossing_of(warp, plan(yarn("", "weft", j)));
+          expect((crossing.warp_z > crossing.weft_z) == ((i + of_kind) % 2 == 0), at);
+          continue;
+        }
+        const bool is_bound = (i - 1) % width + 1 == binding;
+        const Side side = side_of_pile(j, 1, place_at(warp, 0, (j - 0.5) * weave_.weft.pitch));
+        expect(is_bound ? side.is_under && !side.is_over : !side.is_under, at);
+      }
     }
   }
 

@@ -222,12 +222,28 @@ class Maker:
         if self.chance(0.15):
             layers = 2
             lines.append("layers 2")
+        elif not profile and self.chance(0.35):
+            return self.pile(lines, draft, threads, thickness)
         self.random.shuffle(lines)
         self.add("weave", *lines)
         size = [math.lcm(rows, len(weft[0])) * pitches[1], math.lcm(columns, len(warp[0])) * pitches[0]]
         if max(size[0] / pitches[1], size[1] / pitches[0]) <= 6:
             top = layers * thickness * self.between(0.55, 0.8)
             self.box((0, 0, -top), (*size, top), "xy")
+
+    def pile(self, lines, draft, threads, thickness):
+        """A weave of these lines with warp pile, or with weft pile in the place of its draft."""
+        names = [t.name for t in threads]
+        if len(names) > 1 and self.chance(0.4):
+            used = ",".join(names[:1] + names[1:] * self.count(1, 3))
+            lines[1] = " ".join(["weft", used] + lines[1].rsplit(" ", 3)[1:])
+            lines[lines.index(draft)] = f"draft {self.pick('corduroy', 'velveteen')} {2 * self.count(2, 5)}"
+        else:
+            height = self.mm(thickness * self.between(0.5, 6))
+            words = [f"pile {height}", self.pick("", names[-1]), self.pick("", f"every {self.count(3, 6)}")]
+            lines.append(" ".join(filter(None, words + [self.pick("", "face", "back", "both"), self.pick("", "cut")])))
+        self.random.shuffle(lines)
+        self.add("weave", *lines)
 
     def stack(self):
         warp, weft = (self.thread(self.between(0.2, 0.6), flat=True) for _ in range(2))

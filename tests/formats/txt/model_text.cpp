@@ -248,6 +248,13 @@ class Flat {
     add(path + ".thread", v.thread);
     add(path + ".levels", v.levels);
   }
+  void add(const std::string& path, const WarpPile& v) {
+    add(path + ".height", v.height);
+    add(path + ".thread", v.thread);
+    add(path + ".picks", v.picks);
+    add(path + ".side", v.side);
+    add(path + ".is_cut", v.is_cut);
+  }
   void add(const std::string& path, const Pucker& v) {
     add(path + ".tight", v.tight);
     add(path + ".slack", v.slack);
@@ -272,6 +279,8 @@ class Flat {
     add(path + ".layers", v.layers);
     add(path + ".binders", v.binders);
     add(path + ".columns", v.columns);
+    add(path + ".fraction", v.fraction);
+    add(path + ".pile", v.pile);
   }
   void add(const std::string& path, const OwnLoop& v) {
     add(path + ".sign", std::string(1, v.sign));

@@ -317,7 +317,8 @@ class Maker {
   }
   Draft draft() {
     Draft draft;
-    draft.form = static_cast<Draft::Form>(up_to(6));
+    do draft.form = static_cast<Draft::Form>(up_to(8));
+    while (draft.has_pile());
     if (draft.form == Draft::Form::rows) {
       const int width = 1 + up_to(7);
       for (int i = up_to(6); i >= 0; --i) {
@@ -414,6 +415,22 @@ class Maker {
               column.push_back(
                   {coin() ? one_of(threads_) : "", {}, {k > 0 ? 0 : weave.layers.value_or(1), 1}});
             std::ranges::sort(column, {}, &StackedWarp::levels);
+          }
+        } else if (!weave.profile && !weave.layers && coin()) {
+          maybe(weave.crimp, [&] { return up_to(8) / 8.0; });
+          maybe(weave.state, [&] { return static_cast<Weave::State>(up_to(2)); });
+          if (coin()) {
+            weave.pile = WarpPile{{},
+                                  positive(),
+                                  coin() ? one_of(threads_) : "",
+                                  3 + up_to(6),
+                                  static_cast<WarpPile::Side>(up_to(2)),
+                                  coin()};
+          } else {
+            weave.draft.form = coin() ? Draft::Form::corduroy : Draft::Form::velveteen;
+            weave.draft.a = 4 + 2 * up_to(4);
+            weave.weft.threads = {threads_.front(), threads_.back()};
+            if (threads_.front() == threads_.back()) weave.draft = {};
           }
         } else {
           weave.draft = draft();

@@ -56,10 +56,16 @@ const std::string plain = "weave\nwarp flat 2 pitch 1.2\nweft flat 2 pitch 1.5\n
 const std::string twill = "weave\nwarp t 3 pitch 0.5\nweft t 6 pitch 0.6\ndraft twill 2/1\nend\n";
 const std::string jersey = "knit jersey\nthread t\ncourses 2\nwales 2\nend\n";
 const std::string tricot = "warpknit tricot\nthread t\nwales 4 pitch 1.8\ncourses 4 pitch 1.2\nend\n";
+const std::string terry =
+    "weave\nwarp t 2 pitch 0.8\nweft t 3 pitch 0.55\ndraft plain\npile 1 every 3\nend\n";
+// Without room between its picks: tufts of all of them but the ground's end where a face would cut them.
+const std::string corduroy =
+    "thread s\n diameter 0.2\nend\nweave\nwarp t 6 pitch 0.5\nweft t,2s 6 pitch 0.22\ndraft corduroy "
+    "6\nend\n";
 
 // Yarn is everywhere alike: two repeats hold twice as much.
 TEST(CellOfRepeats, SharesAreThoseOfOneRepeat) {
-  for (const std::string& cloth : {plain, twill, jersey, tricot}) {
+  for (const std::string& cloth : {plain, twill, jersey, tricot, terry, corduroy}) {
     SCOPED_TRACE(cloth);
     const Settled one = settle(cloth, "cell repeat"), two = settle(cloth, "cell repeat 2 x 1"),
                   other = settle(cloth, "cell repeat 1x2\nmargin 0.3");

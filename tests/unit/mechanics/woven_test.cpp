@@ -349,15 +349,37 @@ TEST(Woven, PlatesPressACloth) {
       energies.push_back(pressed.energy().sum());
       WovenCloth between = cloth;
       between.thickness = thickness;
-      EXPECT_LT(largest_difference(numbers_of(pressed, cloth, 2.0), numbers_of(found(between), cloth, 2.0)), 1e-6);
-      EXPECT_NEAR(free.pressed(0.97 * free.thickness()).pressed(thickness).energy().sum() / energies.back(), 1.0, 1e-3);
+      EXPECT_LT(largest_difference(numbers_of(pressed, cloth, 2.0), numbers_of(found(between), cloth, 2.0)),
+                1e-6);
+      EXPECT_NEAR(free.pressed(0.97 * free.thickness()).pressed(thickness).energy().sum() / energies.back(),
+                  1.0, 1e-3);
     }
     for (std::size_t k = 2; k < energies.size(); ++k)
       EXPECT_GT(energies[k] - energies[k - 1], energies[k - 1] - energies[k - 2]);
   }
 }
 
-// Hexagonal packing fills every yarn: 2 * 0.1125 / 2 of fibre over 0.907 is the least height of what lies there.
+// Force is the derivative of energy by distance.
+TEST(Woven, ThePressureOfPlatesIsThatOfTheirWork) {
+  const WovenEquilibrium free = found(tows(plain));
+  EXPECT_EQ(free.pressure(), 0.0);
+  for (const double part : {0.95, 0.85, 0.8}) {
+    constexpr double change = 1e-4;
+    const WovenEquilibrium at = free.pressed(part * free.thickness()),
+                           nearer = at.pressed((1.0 - change) * at.thickness());
+    // Energies are of one crossing, over tension * sqrt(area); a crossing has 2 x 2.
+    const double force =
+        (nearer.energy().sum() - at.energy().sum()) / (change * at.thickness() / std::sqrt(0.1125));
+    EXPECT_NEAR(at.pressure() / (force / (4.0 / 0.1125)), 1.0, 5e-3) << part;
+    const WovenEquilibrium pressed = free.pressed_with(at.pressure());
+    EXPECT_NEAR(pressed.thickness() / at.thickness(), 1.0, 1e-4) << part;
+    EXPECT_NEAR(pressed.pressure() / at.pressure(), 1.0, 1e-3) << part;
+  }
+  EXPECT_NEAR(free.pressed_with(1e6).thickness() / free.pressed(0.01).thickness(), 1.0, 0.04);
+}
+
+// Hexagonal packing fills every yarn: 2 * 0.1125 / 2 of fibre over 0.907 is the least height of what lies
+// there.
 TEST(Woven, PlatesComeNoNearerThanFibresArePacked) {
   const WovenEquilibrium free = found(tows(plain)), pressed = free.pressed(0.01);
   const double solid = 0.1125 / densest_packing;
