@@ -148,7 +148,8 @@ constexpr long long most_shafts_checked = 100;
 // A weave's statements, and the places of those that only the whole block can validate: of its draft, which
 // is required or forbidden, and of its state, which conflicts with other statements.
 struct WeaveBlock : Weave {
-  std::optional<Spot> draft_place, state_place, levels_place, fraction_place, pile_place;
+  std::optional<Spot> draft_place, state_place, levels_place, pile_place;
+  std::vector<std::pair<std::string_view, Spot>> plates;  // what presses the cloth, by its word
   std::vector<Spot> stacked_warps;
 };
 
@@ -363,12 +364,11 @@ void read_compact(Parser& p, WeaveBlock& weave, std::string_view) {
 
 // Reports what leaves nothing to be pressed.
 void check_plates(Parser& p, const WeaveBlock& weave) {
-  for (const auto& [own, place] : weave.plates) {
-    const auto report = [&, &word = own, &spot = place](bool is, std::string_view other,
-                                                        std::string_view why) {
+  for (const auto& plates : weave.plates) {
+    const auto report = [&](bool is, std::string_view other, std::string_view why) {
       if (is)
-        p.error(spot, fmt::format("'{0}' and '{1}' exclude each other, {2}: leave out one of them", word,
-                                  other, why));
+        p.error(plates.second, fmt::format("'{0}' and '{1}' exclude each other, {2}: leave out one of them",
+                                           plates.first, other, why));
     };
     report(weave.thickness.has_value(), "thickness", "since both say how far apart the plates are");
     report(weave.profile.has_value(), "profile", "since only yarns whose path is free are pressed");

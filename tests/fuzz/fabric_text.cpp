@@ -153,6 +153,7 @@ class Writer {
     if (choice(4) == 1) line(" layers 2");
     if (choice(4) == 1) line(" spacing {}", one_of({"even", "relaxed"}));
     if (choice(4) == 1 && profile == 0) line(" thickness {}", number(0.01, 2));
+    if (choice(8) == 1 && profile == 0) line(" {} {}", one_of({"fraction", "compact"}), number(0.1, 1));
     if (choice(4) == 1 && profile == 0) line(" state {}", one_of({"loom", "relaxed", "finished"}));
     line("end");
   }
