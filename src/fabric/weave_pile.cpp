@@ -30,7 +30,7 @@ constexpr std::uint64_t points_a_tuft = 2ULL * (points_a_turn + points_a_straigh
 constexpr long long most_tufts = 10'000'000;
 // Least radii of turns, and the usual one at a foot, by the thickness of the yarn.
 constexpr double least_turn = 0.65, usual_turn = 1.0;
-constexpr double narrower = 0.9;  // from one radius to the next one that is tried
+constexpr double narrower = 0.9;   // from one radius to the next one that is tried
 constexpr double lead_step = 0.1;  // of a foot's straight beginning, by the thickness
 constexpr int most_lead_steps = 30;
 constexpr double flattest = pi / 9, most_overhang = 0.75 * pi;  // of the legs of a loop
