@@ -21,6 +21,8 @@ PICTURES = [
     ("weave", "weave_plain.txt", "iso"),
     ("satin", "weave_satin5.txt", "iso"),
     ("orthogonal", "weave_orthogonal.txt", "iso"),
+    ("terry", "weave_terry.txt", "iso"),
+    ("corduroy", "weave_corduroy.txt", "iso"),
     ("jersey", "jersey.txt", "top"),
     ("purl", "knit_purl.txt", "iso"),
     ("tricot_front", "warpknit_tricot.txt", "top"),

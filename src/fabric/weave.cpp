@@ -617,7 +617,7 @@ Result<std::unique_ptr<WeaveConstruction>> WeaveConstruction::make(const Fabric&
     Result<WovenThread> pile =
         woven_thread(fabric, name.empty() ? weave.warp.threads.front() : name, weave.pile->place);
     if (!pile) return pile.error();
-    *warp = with_pile_ends(std::move(*warp), std::move(*pile));
+    *warp = with_pile_ends(*warp, *pile);
   }
   if (!weave.columns.empty())
     if (Status stacked = stack_columns(*warp, fabric, weave.columns); !stacked) return stacked.error();

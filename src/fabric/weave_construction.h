@@ -138,7 +138,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] BoundPart bound_part(long long yarn, long long first, long long last) const;
   [[nodiscard]] std::optional<std::vector<Vec2>> free_part(const BoundPart& part, int side, bool is_up,
                                                            double height) const;
-  static System with_pile_ends(System ground, WovenThread pile);
+  static System with_pile_ends(const System& ground, const WovenThread& pile);
   [[nodiscard]] Result<Drawdown> pile_drawdown() const;
   [[nodiscard]] std::array<long long, 2> pile_repeat() const;  // ends, picks
   [[nodiscard]] bool pile_fits(double height);

@@ -26,11 +26,13 @@ namespace {
 using std::numbers::pi;
 
 constexpr int points_a_gap = 16, points_a_turn = 12, points_a_straight = 4;
-constexpr std::uint64_t points_a_tuft = 2 * (points_a_turn + points_a_straight);
+constexpr std::uint64_t points_a_tuft = 2ULL * (points_a_turn + points_a_straight);
 constexpr long long most_tufts = 10'000'000;
 // Least radii of turns, and the usual one at a foot, by the thickness of the yarn.
 constexpr double least_turn = 0.65, usual_turn = 1.0;
-constexpr double lead_step = 0.1, most_lead = 3.0;  // of a foot's straight beginning, by the thickness
+constexpr double narrower = 0.9;   // from one radius to the next one that is tried
+constexpr double lead_step = 0.1;  // of a foot's straight beginning, by the thickness
+constexpr int most_lead_steps = 30;
 constexpr double flattest = pi / 9, most_overhang = 0.75 * pi;  // of the legs of a loop
 constexpr double pitch_step = 1.02;
 constexpr int most_pitch_steps = 70;
@@ -63,6 +65,16 @@ std::vector<Vec2> turn(double from, double to, double radius, double part = 1.0)
 // The top half of a loop: from a leg of this direction to its apex.
 std::vector<Vec2> half_top(double leg, double radius) {
   return turn(leg, -leg, radius, 0.5);
+}
+
+// Of turns, by the thickness, from the widest one to the least.
+std::vector<double> radii_from(double widest) {
+  std::vector<double> radii;
+  while (widest >= least_turn) {
+    radii.push_back(widest);
+    widest *= narrower;
+  }
+  return radii;
 }
 
 void append(std::vector<Vec2>& line, const std::vector<Vec2>& more) {
@@ -115,9 +127,9 @@ struct WeaveConstruction::Leg {
   // The first that there is with feet of these turns and straights, from the widest one; else none.
   template <class With>
   [[nodiscard]] std::optional<std::vector<Vec2>> first_of(const With& with) const {
-    for (double radius = usual_turn; radius >= least_turn; radius *= 0.9)
-      for (double lead = 0.0; lead <= most_lead; lead += lead_step)
-        if (auto line = with(radius * thickness, lead * thickness)) return line;
+    for (const double radius : radii_from(usual_turn))
+      for (int steps = 0; steps <= most_lead_steps; ++steps)
+        if (auto line = with(radius * thickness, lead_step * steps * thickness)) return line;
     return std::nullopt;
   }
 
@@ -138,8 +150,9 @@ struct WeaveConstruction::Leg {
     return first_of([&](double radius, double lead) -> std::optional<std::vector<Vec2>> {
       if (!has_room(foot(0.5 * pi, radius, lead), 0)) return std::nullopt;
       const double left = reach - foot(0.5 * pi, radius, lead).back().x();
-      for (double top = std::max(left / half_top(0.5 * pi, 1.0).back().x(), least_turn * thickness);
-           top >= least_turn * thickness; top *= 0.9) {
+      const double widest = std::max(left / half_top(0.5 * pi, 1.0).back().x() / thickness, least_turn);
+      for (const double of_top : radii_from(widest)) {
+        const double top = of_top * thickness;
         // The straight between both turns, and by how much the apex lies beyond the middle.
         const auto straight_at = [&](double leg) {
           return (height - foot(leg, radius, lead).back().y() - half_top(leg, top).back().y()) /
@@ -189,7 +202,7 @@ std::optional<long long> WeaveConstruction::bound_from(long long yarn, long long
   return last;
 }
 
-System WeaveConstruction::with_pile_ends(System ground, WovenThread pile) {
+System WeaveConstruction::with_pile_ends(const System& ground, const WovenThread& pile) {
   auto text = std::make_shared<WeaveSystem>(*ground.text);
   text->count *= 2;
   text->pitch *= 0.5;
