@@ -369,15 +369,16 @@ double ClothInEquilibrium::thickness_for(double fraction) const {
 }
 
 double ClothInEquilibrium::packing(const ClothYarn& yarn) const {
+  constexpr int places_a_gap = 8;
   const auto own = static_cast<std::size_t>(number(yarn));
-  const int halves = 2 * crossings(yarn.is_weft);
-  double sum = 0.0;
-  for (int half = 0; half < halves; ++half) {
-    const auto size = equilibrium_.size(system_of(yarn.is_weft), static_cast<int>(own), 0.5 * half);
-    sum += (yarn.is_weft ? cloth_.wefts : cloth_.warps)[own].fibre_area /
-           yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
+  const int places = places_a_gap * crossings(yarn.is_weft);
+  double areas = 0.0;
+  for (int place = 0; place < places; ++place) {
+    const auto size = equilibrium_.size(system_of(yarn.is_weft), static_cast<int>(own),
+                                        static_cast<double>(place) / places_a_gap);
+    areas += yarn::area(yarn::Ellipse{size.width, size.height}, {size.width, size.height});
   }
-  return sum / halves;
+  return (yarn.is_weft ? cloth_.wefts : cloth_.warps)[own].fibre_area * places / areas;
 }
 
 EquilibriumReport ClothInEquilibrium::report() const {

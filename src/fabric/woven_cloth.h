@@ -54,7 +54,7 @@ class ClothInEquilibrium {
   [[nodiscard]] double max_width(bool is_weft) const { return max_width_[is_weft ? 1 : 0]; }
   [[nodiscard]] double max_height(bool is_weft) const { return max_height_[is_weft ? 1 : 0]; }
   [[nodiscard]] EquilibriumReport report() const;
-  // Fibre area over the area of the section, mean along a yarn.
+  // Fibre volume over the volume of the yarn.
   [[nodiscard]] double packing(const ClothYarn& yarn) const;
 
  private:

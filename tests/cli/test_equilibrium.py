@@ -310,7 +310,8 @@ class Equilibrium(Case):
             inches = self.sheet(tows(unit="in", statement=f"  compact {pressure} MPa\n"))
             self.assertAlmostEqual(inches["thickness"] / cloth["thickness"], 1, delta=1e-5)
             again = self.sheet(tows(statement=f"  fraction {cloth['fibre_fraction']!r}\n"))
-            self.assertAlmostEqual(again["thickness"] / cloth["thickness"], 1, delta=1e-3)
+            # Surfaces are within the tolerance, 1/1000 of the diameter of the round tow.
+            self.assertAlmostEqual(again["thickness"], cloth["thickness"], delta=2 * 0.44e-3)
         self.assertEqual(fractions, sorted(fractions))
         # Woven carbon has about 50 to 56 % under a vacuum bag, and 55 to 62 % in an autoclave.
         self.assertTrue(0.50 < fractions[1] < 0.56 < fractions[2] < 0.62, fractions)
