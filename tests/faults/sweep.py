@@ -7,6 +7,7 @@ found. SELVAGE names the program, SELVAGE_FAULTS the library of preload.cpp.
 
 import argparse
 import concurrent.futures
+import functools
 import os
 import pathlib
 import shutil
@@ -149,6 +150,11 @@ class Run:
         return wrong + [f"{name} is left over" for name in self.left]
 
 
+@functools.cache
+def unharmed(command):
+    return Run(command)
+
+
 def chosen(total, every):
     """The calls that are made to fail: the first and last ones, and some between."""
     if every or total <= POINTS:
@@ -159,7 +165,7 @@ def chosen(total, every):
 def sweep(command, call, every, within, pool):
     """The numbers of calls and of faults, and the violations, of this call in this command: once over old outputs, and
     from then on without any."""
-    whole = Run(command)
+    whole = unharmed(command)
     most, faults, found = 0, 0, []
     for old, lasting in ((True, ""), (False, "+")):
         total = Run(command, call, "0", old, within).calls
