@@ -380,8 +380,7 @@ void check_plates(Parser& p, const WeaveBlock& weave) {
   if (weave.plates.size() > 1)
     p.error(weave.plates.back().second,
             "'fraction' and 'compact' exclude each other, since both say how far apart the plates are: leave "
-            "out one "
-            "of them");
+            "out one of them");
 }
 
 void read_binder(Parser& p, WeaveBlock& weave, std::string_view) {

@@ -132,8 +132,8 @@ bool is_in_one(const std::vector<Interval>& intervals, double share) {
   });
 }
 
-// By what share of a repeat, from -1/2 to 1/2, a face at 0 moves to keep clear of turns and, where there is
-// such a place, of ends.
+// By what fraction of a repeat, from -1/2 to 1/2, a face at 0 moves to keep clear of turns and, where there
+// is such a place, of ends.
 double move_off_turns(const std::vector<double>& turns, const std::vector<Interval>& ends, double clear) {
   if (turns.empty() || (turns.front() >= clear && turns.back() <= 1.0 - clear && !is_in_one(ends, 0.0)))
     return 0.0;

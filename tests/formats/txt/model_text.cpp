@@ -280,6 +280,7 @@ class Flat {
     add(path + ".binders", v.binders);
     add(path + ".columns", v.columns);
     add(path + ".fraction", v.fraction);
+    add(path + ".pressure", v.pressure);
     add(path + ".pile", v.pile);
   }
   void add(const std::string& path, const OwnLoop& v) {

@@ -432,6 +432,12 @@ class Maker {
             weave.weft.threads = {threads_.front(), threads_.back()};
             if (threads_.front() == threads_.back()) weave.draft = {};
           }
+        } else if (!weave.profile && coin()) {
+          weave.draft.form = Draft::Form::plain;
+          if (coin())
+            weave.fraction = (1 + up_to(8)) / 10.0;
+          else
+            weave.pressure = positive();
         } else {
           weave.draft = draft();
           maybe(weave.crimp, [&] { return up_to(8) / 8.0; });
