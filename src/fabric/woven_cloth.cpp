@@ -183,6 +183,12 @@ Result<mechanics::WovenCloth> woven_cloth(const ClothText& text) {
   cloth.clearance = text.clearance;
   cloth.thickness = text.weave->thickness;
   cloth.warp_share = text.weave->crimp;
+  if (text.weave->pressure) {
+    const Result<double> tension = tension_of(text, cloth);
+    if (!tension) return tension.error();
+    const double mm = millimetres_per(text.fabric->units);
+    cloth.pressure = *text.weave->pressure * mechanics::mean_area(cloth) * mm * mm / *tension;
+  }
   return cloth;
 }
 
@@ -208,13 +214,6 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
       made = ClothInEquilibrium(text, *cloth, made.equilibrium_.pressed(*cloth->thickness));
       if (made.is_too_thick()) break;
     }
-  }
-  if (text.weave->pressure) {
-    const Result<double> tension = tension_of(text, *cloth);
-    if (!tension) return tension.error();
-    const double mm = millimetres_per(text.fabric->units), area = mechanics::mean_area(*cloth) * mm * mm;
-    return ClothInEquilibrium(text, *cloth,
-                              made.equilibrium_.pressed_with(*text.weave->pressure * area / *tension));
   }
   if (!made.is_too_thick()) return made;
   const std::string_view unit = name_of(text.fabric->units);

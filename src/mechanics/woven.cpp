@@ -128,50 +128,54 @@ WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, doub
   return {between(0), between(1)};
 }
 
+Result<WovenEquilibrium> WovenEquilibrium::next(const WovenCloth& cloth, double flattened) const {
+  const auto problem = std::make_shared<WovenProblem>(cloth, problem_->classes());
+  Result<Minimum> found = least_minimum(*problem, {problem->flattened(minimum_.x, flattened)}, tolerance_);
+  if (!found) return found.error();
+  found->steps += minimum_.steps;
+  return WovenEquilibrium(problem, std::move(*found), scale_, tolerance_);
+}
+
 // In steps that become smaller where there is no equilibrium.
 WovenEquilibrium WovenEquilibrium::pressed(double thickness) const {
   constexpr double first_step = 0.9, last_step = 0.998;
   WovenEquilibrium at = *this;
   double by = first_step, reached = this->thickness();
   while (reached > thickness && by < last_step) {
-    const double next = std::max(thickness, by * reached);
+    const double less = std::max(thickness, by * reached);
     WovenCloth cloth = problem_->cloth();
-    cloth.thickness = next / scale_;
-    const auto problem = std::make_shared<WovenProblem>(cloth, problem_->classes());
-    Result<Minimum> found =
-        least_minimum(*problem, {problem->flattened(at.minimum_.x, next / reached)}, tolerance_);
+    cloth.thickness = less / scale_;
+    Result<WovenEquilibrium> found = at.next(cloth, less / reached);
     if (!found) {
       by = std::sqrt(by);
       continue;
     }
-    found->steps += at.minimum_.steps;
-    reached = next;
-    at.problem_ = problem;
-    at.minimum_ = std::move(*found);
+    reached = less;
+    at = std::move(*found);
   }
   return at;
 }
 
-WovenEquilibrium WovenEquilibrium::pressed_with(double pressure) const {
-  constexpr double step = 0.97, exactness = 1e-6;
-  WovenEquilibrium low = *this;  // pressed with less
-  for (;;) {
-    WovenEquilibrium next = low.pressed(step * low.thickness());
-    if (next.thickness() > (step + exactness) * low.thickness()) return next;  // as thin as it can be
-    if (next.pressure() >= pressure) break;
-    low = std::move(next);
+Result<WovenEquilibrium> WovenEquilibrium::pressed_with(double pressure) const {
+  constexpr double first_step = 4.0, last_step = 1.02;
+  WovenEquilibrium at = *this;
+  double by = first_step, reached = this->pressure();
+  while (reached < pressure) {
+    const double more = std::min(pressure, by * reached);
+    WovenCloth cloth = problem_->cloth();
+    cloth.pressure = more;
+    Result<WovenEquilibrium> found = at.next(cloth, 1.0);
+    if (!found) {
+      by = std::sqrt(by);
+      if (by < last_step) return found.error();
+      continue;
+    }
+    reached = more;
+    at = std::move(*found);
   }
-  double from = step * low.thickness();
-  while (low.thickness() - from > exactness * from) {
-    const double middle = 0.5 * (from + low.thickness());
-    WovenEquilibrium next = low.pressed(middle);
-    if (next.pressure() >= pressure)
-      from = middle;
-    else
-      low = std::move(next);
-  }
-  return low;
+  return at;
 }
+
 
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {
   // In drafts of more kinds of crossings the systems share their waves from place to place, whatever the
@@ -185,6 +189,7 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
   const double scale = std::sqrt(mean_area(cloth));
   WovenCloth ratios = scaled(cloth, 1.0 / scale);
   ratios.thickness.reset();
+  if (ratios.pressure) ratios.pressure = std::min(*ratios.pressure, ratios.constants.pressure);
   const auto problem = std::make_shared<WovenProblem>(ratios, classes);
   std::vector<VectorXd> starts;
   for (const double share : warp_shares) {
@@ -194,6 +199,7 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
   Result<Minimum> found = least_minimum(*problem, starts, options.tolerance);
   if (!found) return found.error();
   const WovenEquilibrium free(problem, std::move(*found), scale, options.tolerance);
+  if (cloth.pressure > ratios.pressure) return free.pressed_with(*cloth.pressure);
   return cloth.thickness ? free.pressed(*cloth.thickness) : free;
 }
 

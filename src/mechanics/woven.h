@@ -32,9 +32,9 @@ class WovenEquilibrium {
   // Between plates this far apart (in the cloth's unit), or as far as they can be brought together, to 0.2 %;
   // itself where it is thinner.
   [[nodiscard]] WovenEquilibrium pressed(double thickness) const;
-  // Between plates that press with this pressure (see pressure()), to 1e-6 of the thickness; as far as they
-  // can be brought together where that needs less.
-  [[nodiscard]] WovenEquilibrium pressed_with(double pressure) const;
+  // Between plates that press with this pressure (see pressure()); itself where its own press with more. Error
+  // (geometry): no yarns bear it.
+  [[nodiscard]] Result<WovenEquilibrium> pressed_with(double pressure) const;
   // Of the plates, over the tension of a finished cloth by the mean fibre area.
   [[nodiscard]] double pressure() const { return problem_->pressure(minimum_); }
 
@@ -48,6 +48,8 @@ class WovenEquilibrium {
   [[nodiscard]] int num_classes() const { return problem_->classes().count(); }
 
  private:
+  // From here.
+  [[nodiscard]] Result<WovenEquilibrium> next(const WovenCloth& cloth, double flattened) const;
   std::shared_ptr<const WovenProblem> problem_;
   Minimum minimum_;
   double scale_, tolerance_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -86,12 +87,13 @@ WovenProblem::WovenProblem(const WovenCloth& scaled, Partition classes)
     first_strands_.push_back(first_strands_.back() + count(WovenSystem::warp, at) +
                              count(WovenSystem::weft, at));
   }
-  num_unknowns_ = static_cast<Eigen::Index>(first_strands_.back()) * block_a_strand;
+  num_unknowns_ = static_cast<Eigen::Index>(first_strands_.back()) * block_a_strand + 1;
   for (const int representative : classes_.representatives)
     for (const Strand strand : strands(crossing(representative)))
       add_stations(strand, crossing(representative));
   for (std::size_t k = 0; k < classes_.representatives.size(); ++k)
     add_terms(crossing(classes_.representatives[k]), classes_.sizes[k] / crossings);
+  add_plates();
   find_pairs();
 }
 
@@ -261,6 +263,7 @@ void WovenProblem::find_pairs() {
     if (is_new) pairs_.push_back({first, second, {}});
     term.pair = at->second;
   };
+  for (Plate& term : plates_) find(term);
   for (Beside& term : besides_) find(term);
   for (Stack& term : stacks_) find(term);
   for (Contact& term : contacts_) find(term);
@@ -268,9 +271,10 @@ void WovenProblem::find_pairs() {
 
 void WovenProblem::find_places() {
   std::vector<char> is_used(pairs_.size(), 0);
-  const std::size_t first_beside = packed_.size() + bounds_.size();
+  for (std::size_t k = 0; k < plates_.size(); ++k)
+    if (is_active_[first_plate() + k] != 0) is_used[plates_[k].pair] = 1;
   for (std::size_t k = 0; k < besides_.size(); ++k)
-    if (is_active_[first_beside + k] != 0) is_used[besides_[k].pair] = 1;
+    if (is_active_[first_beside() + k] != 0) is_used[besides_[k].pair] = 1;
   for (std::size_t k = 0; k < stacks_.size(); ++k)
     if (is_active_[first_stack() + k] != 0) is_used[stacks_[k].pair] = 1;
   for (std::size_t k = 0; k < contacts_.size(); ++k)
@@ -351,18 +355,34 @@ void WovenProblem::add_yarn(Strand strand, Crossing at, double share) {
     if (is_knot) holds_.push_back({here, 0.5 * hold * share * area * length / spans_a_gap});
     for (const double side : {-1.0, 1.0}) {
       folds_.push_back({here, side});
-      if (cloth_.thickness) {
-        Bound plate{here, 0.5 * *cloth_.thickness, {}};
-        plate.weights[z] = -side;
-        plate.weights[half_height] = -1.0;
-        bounds_.push_back(plate);
-      }
+      plates_.push_back({here, 0, 0, side});
       if (is_knot) continue;
       Bound steep{here, steepest, {}};
       steep.weights[slope] = side;
       bounds_.push_back(steep);
     }
   }
+}
+
+// Half their distance is the height of a station of their own.
+void WovenProblem::add_plates() {
+  Span span;
+  span.unknowns.fill(static_cast<int>(num_unknowns_) - 1);
+  Station station;
+  station.span = spans_.size();
+  station.path[0][0] = 1.0;
+  for (Plate& plate : plates_) plate.second = stations_.size();
+  if (cloth_.thickness) {
+    Bound limit{stations_.size(), 0.5 * *cloth_.thickness, {}};
+    limit.weights[z] = -1.0;
+    bounds_.push_back(limit);
+  }
+  spans_.push_back(span);
+  stations_.push_back(station);
+  const auto mean = [](const std::vector<double>& gaps) {
+    return std::accumulate(gaps.begin(), gaps.end(), 0.0) / static_cast<double>(gaps.size());
+  };
+  plates_area_ = classes_.count() * mean(cloth_.warp_gaps) * mean(cloth_.weft_gaps);
 }
 
 // A yarn and those of the next column or row of its system, side by side. Between the same yarns neither
@@ -521,6 +541,7 @@ VectorXd WovenProblem::start(double warp_share) const {
       }
     }
   }
+  x[num_unknowns_ - 1] = 0.5 * thickness(x);
   return x;
 }
 
@@ -536,6 +557,7 @@ VectorXd WovenProblem::flattened(VectorXd x, double by) const {
       }
     }
   }
+  x[num_unknowns_ - 1] *= by;
   return x;
 }
 

@@ -3,7 +3,8 @@
 // finished cloth times that area.
 //
 // A centre line is a cubic B-spline over eight spans from crossing to crossing, a section an ellipse that is
-// given at crossings and half way between them, with smooth steps from one to the next. A crossing is that of
+// given at crossings and half way between them, with smooth steps from one to the next. Two plates press on
+// the cloth. A crossing is that of
 // a row of wefts and a column of warps, one of each or several above each other. Crossings of a class
 // (partition.h) have the same unknowns and terms. Every term is a function of what yarns are at one station
 // or at two.
@@ -43,7 +44,8 @@ struct WovenCloth {
   std::vector<char> warp_on_top;             // wefts x warps: 1, or 0
   double warp_tension = 1, weft_tension = 1;
   double clearance = 0;              // between yarns
-  std::optional<double> thickness;   // between plates, at most
+  std::optional<double> pressure;    // of the plates, as constants.pressure, which it is where none is said
+  std::optional<double> thickness;   // between the plates, at most
   std::optional<double> warp_share;  // of the waves of both systems, 0 .. 1; of one yarn a row and column
   WovenConstants constants;
   [[nodiscard]] int ends() const { return static_cast<int>(warps.size()); }
@@ -79,7 +81,7 @@ class WovenProblem final : public BarrierProblem {
   [[nodiscard]] Eigen::VectorXd flattened(Eigen::VectorXd x, double by) const;
   // Of the plates; `at`: a minimum of the inequalities that take part.
   [[nodiscard]] double pressure(const Minimum& at) const;
-  // Distance of the plates that touch the cloth.
+  // Distance of plates that touch the cloth.
   [[nodiscard]] double thickness(const Eigen::VectorXd& x) const;
   // Which inequalities take part: all that are not far from touching. True: one has entered that is violated
   // by more than `tolerance`, or one that no longer holds has left. Multipliers and slacks follow.
@@ -150,6 +152,10 @@ class WovenProblem final : public BarrierProblem {
     std::size_t station = 0;
     double least_product = 0;  // of the half sizes
   };
+  struct Plate {
+    std::size_t first = 0, second = 0, pair = 0;  // of the yarn; of the plates
+    double side = 1;
+  };
   struct Bound {  // linear
     std::size_t station = 0;
     double constant = 0;
@@ -197,6 +203,7 @@ class WovenProblem final : public BarrierProblem {
   struct StationSums;
   struct Sums;
 
+  [[nodiscard]] double plates_force() const;  // energy by half their distance
   [[nodiscard]] std::vector<Values> values_at(const Eigen::VectorXd& x) const;
   [[nodiscard]] WovenEnergy weighted_energy(const std::vector<Values>& values,
                                             const Eigen::VectorXd& x) const;
@@ -218,6 +225,7 @@ class WovenProblem final : public BarrierProblem {
   void find_places();  // of the inequalities that take part
   void add_terms(Crossing at, double share);
   void add_yarn(Strand strand, Crossing at, double share);
+  void add_plates();
   void add_contacts(Crossing at, int warp_layer, int weft_layer);
   std::size_t add_run(Strand strand, Crossing at, int direction, int places, double sign);
   void add_beside(Strand strand, Crossing at);
@@ -252,15 +260,18 @@ class WovenProblem final : public BarrierProblem {
   void for_active(const Use& use) const;
   template <class Use>
   void for_candidates(const Use& use) const;
-  [[nodiscard]] std::size_t first_stack() const {  // of the candidates
-    return packed_.size() + bounds_.size() + besides_.size() + folds_.size();
-  }
+  // Of the candidates.
+  [[nodiscard]] std::size_t first_plate() const { return packed_.size() + bounds_.size(); }
+  [[nodiscard]] std::size_t first_beside() const { return first_plate() + plates_.size(); }
+  [[nodiscard]] std::size_t first_fold() const { return first_beside() + besides_.size(); }
+  [[nodiscard]] std::size_t first_stack() const { return first_fold() + folds_.size(); }
   [[nodiscard]] std::size_t first_contact() const { return first_stack() + stacks_.size(); }
 
   WovenCloth cloth_;
   Partition classes_;
   std::vector<int> first_strands_;  // of each class, and the number of all
-  Eigen::Index num_unknowns_ = 0;
+  Eigen::Index num_unknowns_ = 0;  // the last one: half the distance of the plates
+  double plates_area_ = 0;         // of the crossings of all classes, one each
   std::vector<Span> spans_;
   std::vector<SpanPair> pairs_;
   std::vector<Station> stations_;
@@ -271,6 +282,7 @@ class WovenProblem final : public BarrierProblem {
   std::vector<HoldTerm> holds_;
   std::vector<Packed> packed_;
   std::vector<Bound> bounds_;
+  std::vector<Plate> plates_;
   std::vector<Beside> besides_;
   std::vector<Fold> folds_;
   std::vector<Stack> stacks_;

@@ -172,6 +172,9 @@ void WovenProblem::for_candidates(const Use& use) const {
             if (p.weights[i] != 0.0) sum += v[i] * p.weights[i];
           return sum;
         });
+  for (const Plate& p : plates_)
+    use(TwoStations{p.first, p.second, p.pair},
+        [&](const auto& v) { return v[4] - v[0] * p.side - v[3]; });
   for (const Beside& p : besides_)
     use(TwoStations{p.first, p.second, p.pair}, [&](const auto& v) { return beside_of(p, v); });
   for (const Fold& p : folds_)
@@ -246,19 +249,19 @@ double WovenProblem::thickness(const VectorXd& x) const {
   return 2.0 * half;
 }
 
-// The force is the derivative of the energy by the distance of the plates, of which each inequality has half.
 double WovenProblem::pressure(const Minimum& at) const {
-  double force = 0.0;
+  double force = 0.0;  // by half their distance
   Index row = 0;
-  for (std::size_t k = 0; k < is_active_.size(); ++k) {
+  for (std::size_t k = 0; k < first_beside(); ++k) {
     if (is_active_[k] == 0) continue;
-    const bool is_bound = k >= packed_.size() && k < packed_.size() + bounds_.size();
-    if (is_bound && bounds_[k - packed_.size()].weights[z] != 0.0) force += 0.5 * at.multipliers[row];
+    if (k >= first_plate()) force += at.multipliers[row];
     ++row;
   }
-  const double area = std::accumulate(cloth_.warp_gaps.begin(), cloth_.warp_gaps.end(), 0.0) *
-                      std::accumulate(cloth_.weft_gaps.begin(), cloth_.weft_gaps.end(), 0.0);
-  return force / (classes_.count() * area / (cloth_.columns() * cloth_.rows()));
+  return 0.5 * force / plates_area_;
+}
+
+double WovenProblem::plates_force() const {
+  return 2.0 * cloth_.pressure.value_or(cloth_.constants.pressure) * plates_area_;
 }
 
 double WovenProblem::crimp(WovenSystem system, const VectorXd& x) const {
@@ -274,7 +277,7 @@ double WovenProblem::crimp(WovenSystem system, const VectorXd& x) const {
 
 double WovenProblem::evaluate(const VectorXd& x, VectorXd& inequalities) const {
   const std::vector<Values> values = values_at(x);
-  const double sum = weighted_energy(values, x).sum();
+  const double sum = weighted_energy(values, x).sum() + plates_force() * x[num_unknowns_ - 1];
   double held = 0.0;
   for (const HoldTerm& term : holds_) held += term.factor * square(values[term.station][z]);
   inequalities.resize(std::count(is_active_.begin(), is_active_.end(), 1));
@@ -328,6 +331,7 @@ void WovenProblem::differentiate(const VectorXd& x, const VectorXd& multipliers,
   std::vector<StationSums> sums(stations_.size());
   double* const second = made.second.valuePtr();
   made.gradient = VectorXd::Zero(num_unknowns_);
+  made.gradient[num_unknowns_ - 1] = plates_force();
   // Adds factor * (second derivatives of a term) + outer * (outer product of its gradient).
   const auto add_second = [&](const auto& at, const auto& term, double factor, double outer) {
     if constexpr (std::is_same_v<std::decay_t<decltype(at)>, TwoStations>) {
@@ -470,9 +474,7 @@ void WovenProblem::set_active(std::vector<char> active) {
 bool WovenProblem::update(Minimum& at, double tolerance) {
   // What is not further from touching takes part; of yarns side by side twice the room, since soft ones widen
   // by much in one round.
-  constexpr double near = 0.05, near_beside = 3.0;
-  const std::size_t first_beside = packed_.size() + bounds_.size(),
-                    first_fold = first_beside + besides_.size();
+  constexpr double near_any = 0.05, near_plate = 0.2, near_beside = 3.0;
   const bool is_first = is_active_.empty();
   const std::vector<Values> values = values_at(at.x);
   const std::vector<int> reach = reaches(values);
@@ -492,7 +494,10 @@ bool WovenProblem::update(Minimum& at, double tolerance) {
           contact.warp_place <= reach[contact.warp_run] && contact.weft_place <= reach[contact.weft_run];
     }
     const bool is_pressing = was_active && at.multipliers[old] > tolerance;
-    const bool is_near = value < (index >= first_beside && index < first_fold ? near_beside : near);
+    const double near = index < first_plate() || index >= first_fold() ? near_any
+                        : index < first_beside()                        ? near_plate
+                                                                        : near_beside;
+    const bool is_near = value < near;
     bool is_active = is_valid && (was_active || is_near || index < packed_.size());
     // What presses and no longer holds has to go; what takes part and does not press may stay.
     if (!is_valid && was_active) is_active = !is_pressing;
