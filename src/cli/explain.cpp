@@ -90,6 +90,8 @@ std::string equilibrium_text() {
          "               monofilaments and wires are not flattened;\n"
          "  compaction   of fibres within the yarn.\n"
          "Yarns do not overlap. A loose cloth has nearly round yarns, a dense one flat and compact ones.\n"
+         "Plates press lightly on the cloth, as finishing and a thickness gauge do: long floats do not\n"
+         "stand away from it.\n"
          "\n"
          "The state determines the tensions:\n"
          "  state finished   equal tensions in both systems: what a data sheet means, and the default\n"

@@ -23,6 +23,7 @@ namespace {
 using mechanics::WovenSystem;
 
 constexpr double stiffness_of_solids = 100;
+constexpr double solid_packing = 0.9;
 
 Weave::State state_of(const Weave& weave) {
   return weave.state.value_or(Weave::State::finished);
@@ -215,6 +216,7 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
       if (made.is_too_thick()) break;
     }
   }
+  if (text.weave->pressure && made.is_solid()) return made.too_much_pressure(text);
   if (!made.is_too_thick()) return made;
   const std::string_view unit = name_of(text.fabric->units);
   if (!text.weave->fraction)
@@ -229,6 +231,31 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
                   "packing fractions of {:.2f} (warp) and {:.2f} (weft)",
                   *text.weave->fraction, rounded_down(made.fraction()), made.report().systems[0].packing,
                   made.report().systems[1].packing));
+}
+
+bool ClothInEquilibrium::is_solid() const {
+  const EquilibriumReport found = report();
+  return std::all_of(found.systems.begin(), found.systems.end(), [](const EquilibriumReport::System& system) {
+    return system.packing > solid_packing;
+  });
+}
+
+Message ClothInEquilibrium::too_much_pressure(const ClothText& text) const {
+  constexpr double exactness = 1.01;
+  double from = cloth_.constants.pressure, to = *cloth_.pressure;
+  while (to > exactness * from) {
+    mechanics::WovenCloth cloth = cloth_;
+    cloth.pressure = std::sqrt(from * to);
+    Result<mechanics::WovenEquilibrium> found = mechanics::find_equilibrium(cloth);
+    const bool is_less =
+        found && !ClothInEquilibrium(text, std::move(cloth), std::move(*found)).is_solid();
+    (is_less ? from : to) = std::sqrt(from * to);
+  }
+  return error(Kind::geometry,
+               fmt::format("a pressure of {:.6g} MPa is more than the yarns bear: at {:.3g} MPa fibres fill "
+                           "{} of them (0.907: hexagons of round fibres)",
+                           *text.weave->pressure,
+                           rounded_down(*text.weave->pressure * from / *cloth_.pressure), solid_packing));
 }
 
 bool ClothInEquilibrium::is_too_thick() const {

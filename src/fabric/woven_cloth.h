@@ -68,6 +68,9 @@ class ClothInEquilibrium {
   // Of a layer that has this fraction, with yarns as long as they are.
   [[nodiscard]] double thickness_for(double fraction) const;
   [[nodiscard]] bool is_too_thick() const;
+  [[nodiscard]] bool is_solid() const;  // fibres fill its yarns
+  // Of a cloth whose pressure makes it solid; with the largest one that does not.
+  [[nodiscard]] Message too_much_pressure(const ClothText& text) const;
   [[nodiscard]] std::vector<ClothYarn> yarns(bool is_weft) const;
   [[nodiscard]] int crossings(bool is_weft) const { return is_weft ? cloth_.columns() : cloth_.rows(); }
 

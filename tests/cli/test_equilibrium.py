@@ -304,7 +304,7 @@ class Equilibrium(Case):
     def test_pressure(self):
         """The more pressure the more fibre; the same in inches; as a fraction of what it reaches."""
         fractions = []
-        for pressure in (0.01, 0.1, 0.6):
+        for pressure in (0.03, 0.1, 0.6):
             cloth = self.sheet(tows(statement=f"  compact {pressure}\n"))
             fractions.append(cloth["fibre_fraction"])
             inches = self.sheet(tows(unit="in", statement=f"  compact {pressure} MPa\n"))
@@ -315,6 +315,10 @@ class Equilibrium(Case):
         self.assertEqual(fractions, sorted(fractions))
         # Woven carbon has about 50 to 56 % under a vacuum bag, and 55 to 62 % in an autoclave.
         self.assertTrue(0.50 < fractions[1] < 0.56 < fractions[2] < 0.62, fractions)
+        for pressure in (100, 1e5):
+            said = self.failure(tows(statement=f"  compact {pressure}\n"))
+            largest = re.search(r"is more than the yarns bear: at (\S+) MPa fibres fill 0.9 of them", said)[1]
+            self.is_sound(tows(statement=f"  compact {largest}\n"))
         said = self.failure(tows(statement="  compact 0.1\n").replace("  filaments 3000\n", ""))
         self.assertRegex(said, r":6:1: error: how far a pressure presses thread 'tow' .* needs 'filaments'")
 
