@@ -21,6 +21,7 @@
 #include "core/source.h"
 #include "fem/cell_mesher.h"
 #include "formats/registry.h"
+#include "mechanics/woven.h"
 #include "nurbs/basis.h"
 #include "nurbs/restrict.h"
 #include "scripts/benchmarks/built.h"
@@ -73,6 +74,21 @@ fabric::BuildOptions published() {
 
 Work building(fabric::Fabric cloth, fabric::BuildOptions options) {
   return [cloth = std::move(cloth), options = std::move(options)] { benchmarks::built(cloth, options); };
+}
+
+// Of a 5-end satin of cotton, 20 tex, 30 ends and 25 picks a cm.
+Work equilibrating() {
+  constexpr int repeat = 5, step = 2;
+  mechanics::WovenYarn yarn;
+  yarn.fibre_area = 20.0 / 1520.0;  // mm2
+  mechanics::WovenCloth cloth;
+  cloth.warps.assign(repeat, yarn);
+  cloth.wefts.assign(repeat, yarn);
+  cloth.warp_gaps.assign(repeat, 10.0 / 30.0);
+  cloth.weft_gaps.assign(repeat, 10.0 / 25.0);
+  for (int pick = 0; pick < repeat; ++pick)
+    for (int end = 0; end < repeat; ++end) cloth.warp_on_top.push_back(end == step * pick % repeat ? 0 : 1);
+  return [cloth] { required(mechanics::find_equilibrium(cloth)); };
 }
 
 // All of a file but the making of its yarns.
@@ -183,6 +199,7 @@ const std::map<std::string, Maker>& paths() {
   static const std::map<std::string, Maker> all = {
       {"build-jersey", [](const std::string&) { return building(benchmarks::jersey(16), published()); }},
       {"build-weave", [](const std::string&) { return building(weave(12), {}); }},
+      {"equilibrium", [](const std::string&) { return equilibrating(); }},
       {"mend-knit", [](const std::string&) { return building(benchmarks::jersey(8), {}); }},
       {"iges-write",
        [](const std::string& folder) {

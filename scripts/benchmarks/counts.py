@@ -25,6 +25,7 @@ BOUND = 0.05
 PATHS = {
     "build-jersey": "jersey of 16 x 16 loops, as published: centre lines and tubes",
     "build-weave": "plain weave of 12 x 12 yarns: centre lines and tubes",
+    "equilibrium": "satin of 5 ends and picks, from three starts",
     "mend-knit": "jersey of 8 x 8 loops of 0.2 mm, mended so that none overlap, and built",
     "iges-write": "256 yarns of 18 x 16 control points",
     "iges-read": "the same file, to surfaces",

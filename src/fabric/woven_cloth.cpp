@@ -235,9 +235,8 @@ Result<ClothInEquilibrium> ClothInEquilibrium::find(const ClothText& text) {
 
 bool ClothInEquilibrium::is_solid() const {
   const EquilibriumReport found = report();
-  return std::all_of(found.systems.begin(), found.systems.end(), [](const EquilibriumReport::System& system) {
-    return system.packing > solid_packing;
-  });
+  return std::all_of(found.systems.begin(), found.systems.end(),
+                     [](const EquilibriumReport::System& system) { return system.packing > solid_packing; });
 }
 
 Message ClothInEquilibrium::too_much_pressure(const ClothText& text) const {
@@ -247,8 +246,7 @@ Message ClothInEquilibrium::too_much_pressure(const ClothText& text) const {
     mechanics::WovenCloth cloth = cloth_;
     cloth.pressure = std::sqrt(from * to);
     Result<mechanics::WovenEquilibrium> found = mechanics::find_equilibrium(cloth);
-    const bool is_less =
-        found && !ClothInEquilibrium(text, std::move(cloth), std::move(*found)).is_solid();
+    const bool is_less = found && !ClothInEquilibrium(text, std::move(cloth), std::move(*found)).is_solid();
     (is_less ? from : to) = std::sqrt(from * to);
   }
   return error(Kind::geometry,

@@ -4,8 +4,8 @@
 
 namespace selvage::mechanics {
 
-// Fitted to mill cloths with stated take-up (scripts/fit-cloth), the pressure to the thickness of 13 cloths of
-// glass, aramid and carbon (samples/trade); nothing here is of one cloth or weave.
+// Fitted to mill cloths with stated take-up (scripts/fit-cloth), the pressure to the thickness of 13 cloths
+// of glass, aramid and carbon (samples/trade); nothing here is of one cloth or weave.
 struct WovenConstants {
   double bending = 0.37;       // stiffness over tension * (mean fibre area of the cloth's yarns)
   double loom_tension = 1.71;  // of the weft over that of the warp, on the loom
@@ -25,8 +25,8 @@ inline constexpr double relaxed_tension = 0.05;
 
 // Resistance to flattening of a yarn of this twist factor, over that of the reference: in proportion, with a
 // rest for yarns without twist, which friction and sizing hold together (Afrashteh, Merati, Jeddi, Indian J.
-// Fibre & Textile Research 38 (2013) 126: height over width 0.35 without twist, 0.86 at 4,600; 0.27 and 0.84 by
-// this).
+// Fibre & Textile Research 38 (2013) 126: height over width 0.35 without twist, 0.86 at 4,600; 0.27 and 0.84
+// by this).
 inline constexpr double cohesion = 0.0018;
 constexpr double stiffness_by_twist(double twist_factor) {
   return cohesion + (1.0 - cohesion) * twist_factor / reference_twist_factor;

@@ -1,5 +1,6 @@
 #include "mechanics/interior_point.h"
 
+#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,22 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// The last unknown may be joined with all others: it stays the last one.
+struct AllButLast {
+  using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
+  template <class Matrix>
+  void operator()(const Matrix& symmetric, PermutationType& order) const {
+    const Eigen::SparseMatrix<double> whole = symmetric;
+    const Index count = whole.cols() - 1;
+    const Eigen::SparseMatrix<double> others = whole.topLeftCorner(count, count);
+    PermutationType of_others;
+    Eigen::AMDOrdering<int>()(others, of_others);
+    order.resize(count + 1);
+    order.indices().head(count) = of_others.indices();
+    order.indices()[count] = static_cast<int>(count);
+  }
+};
+
 // The linear system of a step: positive definite by what is added to its diagonal.
 class StepSolver {
  public:
@@ -60,7 +77,7 @@ class StepSolver {
 
  private:
   static constexpr int max_attempts = 40;
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, AllButLast> solver_;
   double last_shift_ = 0;
 };
 

@@ -20,6 +20,10 @@ using Eigen::VectorXd;
 // Shares of the waves from which a search begins.
 constexpr std::array<double, 3> warp_shares = {0.5, 0.8, 0.2};
 
+// Tolerance before the last one; of inequalities; rounds of those that take part.
+constexpr double fine = 1e-5, max_violation = 1e-6;
+constexpr int max_rounds = 30;
+
 WovenCloth scaled(WovenCloth cloth, double by) {
   for (auto* yarns : {&cloth.warps, &cloth.wefts})
     for (WovenYarn& yarn : *yarns) yarn.fibre_area *= by * by;
@@ -31,12 +35,12 @@ WovenCloth scaled(WovenCloth cloth, double by) {
 }
 
 // Minima of the inequalities that take part, until all others hold, too.
-Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_rounds,
+Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int most_rounds,
                BarrierWorkspace& workspace) {
   BarrierOptions options;
   options.tolerance = tolerance;
   int steps = at.steps;
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < most_rounds; ++round) {
     if (!problem.update(at, tolerance) && round > 0) break;
     at = minimize(problem, std::move(at), options, workspace);
     steps += at.steps;
@@ -49,8 +53,8 @@ Minimum settle(WovenProblem& problem, Minimum at, double tolerance, int max_roun
 // Rough minima from all starts; those that are no copies of each other are polished, and the one of least
 // energy is taken: of equal ones (1e-6) that of the first start.
 Result<Minimum> least_minimum(WovenProblem& problem, const std::vector<VectorXd>& starts, double tolerance) {
-  constexpr double rough = 1e-3, fine = 1e-5, promising = 0.01, copy = 0.05, tie = 1e-6, max_violation = 1e-6;
-  constexpr int rough_rounds = 2, max_rounds = 30;
+  constexpr double rough = 1e-3, promising = 0.01, copy = 0.05, tie = 1e-6;
+  constexpr int rough_rounds = 2;
   BarrierWorkspace workspace;
   struct Candidate {
     Minimum minimum;
@@ -130,7 +134,19 @@ WovenEquilibrium::Size WovenEquilibrium::size(WovenSystem system, int yarn, doub
 
 Result<WovenEquilibrium> WovenEquilibrium::next(const WovenCloth& cloth, double flattened) const {
   const auto problem = std::make_shared<WovenProblem>(cloth, problem_->classes());
-  Result<Minimum> found = least_minimum(*problem, {problem->flattened(minimum_.x, flattened)}, tolerance_);
+  const VectorXd start = problem->flattened(minimum_.x, flattened);
+  if (cloth.thickness && problem_->cloth().thickness) {
+    // The same inequalities: most of those that press will press on.
+    Minimum near = minimum_;
+    near.x = start;
+    problem->set_active(problem_->active());
+    BarrierWorkspace workspace;
+    near = settle(*problem, std::move(near), fine, max_rounds, workspace);
+    near = settle(*problem, std::move(near), tolerance_, max_rounds, workspace);
+    if (near.is_converged && problem->worst(near.x) <= max_violation)
+      return WovenEquilibrium(problem, std::move(near), scale_, tolerance_);
+  }
+  Result<Minimum> found = least_minimum(*problem, {start}, tolerance_);
   if (!found) return found.error();
   found->steps += minimum_.steps;
   return WovenEquilibrium(problem, std::move(*found), scale_, tolerance_);
@@ -175,7 +191,6 @@ Result<WovenEquilibrium> WovenEquilibrium::pressed_with(double pressure) const {
   }
   return at;
 }
-
 
 Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOptions& options) {
   // In drafts of more kinds of crossings the systems share their waves from place to place, whatever the

@@ -32,8 +32,8 @@ class WovenEquilibrium {
   // Between plates this far apart (in the cloth's unit), or as far as they can be brought together, to 0.2 %;
   // itself where it is thinner.
   [[nodiscard]] WovenEquilibrium pressed(double thickness) const;
-  // Between plates that press with this pressure (see pressure()); itself where its own press with more. Error
-  // (geometry): no yarns bear it.
+  // Between plates that press with this pressure (see pressure()); itself where its own press with more.
+  // Error (geometry): no yarns bear it.
   [[nodiscard]] Result<WovenEquilibrium> pressed_with(double pressure) const;
   // Of the plates, over the tension of a finished cloth by the mean fibre area.
   [[nodiscard]] double pressure() const { return problem_->pressure(minimum_); }

@@ -270,8 +270,8 @@ class WovenProblem final : public BarrierProblem {
   WovenCloth cloth_;
   Partition classes_;
   std::vector<int> first_strands_;  // of each class, and the number of all
-  Eigen::Index num_unknowns_ = 0;  // the last one: half the distance of the plates
-  double plates_area_ = 0;         // of the crossings of all classes, one each
+  Eigen::Index num_unknowns_ = 0;   // the last one: half the distance of the plates
+  double plates_area_ = 0;          // of the crossings of all classes, one each
   std::vector<Span> spans_;
   std::vector<SpanPair> pairs_;
   std::vector<Station> stations_;

@@ -173,8 +173,7 @@ void WovenProblem::for_candidates(const Use& use) const {
           return sum;
         });
   for (const Plate& p : plates_)
-    use(TwoStations{p.first, p.second, p.pair},
-        [&](const auto& v) { return v[4] - v[0] * p.side - v[3]; });
+    use(TwoStations{p.first, p.second, p.pair}, [&](const auto& v) { return v[4] - v[0] * p.side - v[3]; });
   for (const Beside& p : besides_)
     use(TwoStations{p.first, p.second, p.pair}, [&](const auto& v) { return beside_of(p, v); });
   for (const Fold& p : folds_)
@@ -495,8 +494,8 @@ bool WovenProblem::update(Minimum& at, double tolerance) {
     }
     const bool is_pressing = was_active && at.multipliers[old] > tolerance;
     const double near = index < first_plate() || index >= first_fold() ? near_any
-                        : index < first_beside()                        ? near_plate
-                                                                        : near_beside;
+                        : index < first_beside()                       ? near_plate
+                                                                       : near_beside;
     const bool is_near = value < near;
     bool is_active = is_valid && (was_active || is_near || index < packed_.size());
     // What presses and no longer holds has to go; what takes part and does not press may stay.

@@ -58,7 +58,16 @@ def constants():
     text = (ROOT / "src/mechanics/constants.h").read_text()
     return {
         name: float(re.search(rf"{name} = ([\d.e-]+);", text)[1])
-        for name in ("bending", "loom_tension", "flattening", "packing", "compaction", "pressure", "cohesion", "relaxed_tension")
+        for name in (
+            "bending",
+            "loom_tension",
+            "flattening",
+            "packing",
+            "compaction",
+            "pressure",
+            "cohesion",
+            "relaxed_tension",
+        )
     }
 
 
