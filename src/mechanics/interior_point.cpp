@@ -37,11 +37,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The last unknown may be joined with all others: it stays the last one.
 struct AllButLast {
   using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
-  template <class Matrix>
-  void operator()(const Matrix& symmetric, PermutationType& order) const {
-    const Eigen::SparseMatrix<double> whole = symmetric;
-    const Index count = whole.cols() - 1;
-    const Eigen::SparseMatrix<double> others = whole.topLeftCorner(count, count);
+  void operator()(const Eigen::SparseMatrix<double>& symmetric, PermutationType& order) const {
+    const Index count = symmetric.cols() - 1;
+    const Eigen::SparseMatrix<double> others = symmetric.topLeftCorner(count, count);
     PermutationType of_others;
     Eigen::AMDOrdering<int>()(others, of_others);
     order.resize(count + 1);
