@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 
 namespace selvage::test {
 

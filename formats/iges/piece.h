@@ -1,8 +1,8 @@
 // A garment piece: its outline as curves (126) and its inside as a trimmed plane (144).
 #pragma once
 
-#include "fabric/piece.h"
 #include "formats/iges/entities.h"
+#include "garment/piece.h"
 
 namespace selvage::formats::iges {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <map>
 
-#include "fabric/knit_journey.h"
+#include "knit/journey.h"
 
 namespace selvage::formats::knitout {
 

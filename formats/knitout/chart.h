@@ -1,4 +1,4 @@
-// Of a stitch graph the chart of a weft knit (fabric/knit_chart.h), which the product builds.
+// Of a stitch graph the chart of a weft knit (knit/chart.h), which the product builds.
 #pragma once
 
 #include <optional>

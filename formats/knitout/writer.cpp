@@ -7,10 +7,10 @@
 #include <variant>
 
 #include "core/text_report.h"
-#include "fabric/knit_journey.h"
 #include "formats/knitout/chart.h"
 #include "formats/knitout/operation.h"
 #include "formats/knitout/program.h"
+#include "knit/journey.h"
 
 namespace selvage::formats::knitout {
 

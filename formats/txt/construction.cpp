@@ -4,13 +4,13 @@
 #include <charconv>
 #include <numeric>
 
-#include "fabric/draft.h"
-#include "fabric/lapping.h"
 #include "formats/txt/blocks.h"
 #include "formats/txt/pitch.h"
 #include "formats/txt/slip.h"
 #include "formats/txt/trade_draft.h"
+#include "knit/lapping.h"
 #include "mechanics/constants.h"
+#include "weave/draft.h"
 
 namespace selvage::formats::txt {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "fabric/draft.h"
+#include "weave/draft.h"
 
 namespace selvage::formats::wif {
 

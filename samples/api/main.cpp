@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "formats/registry.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "scripts/benchmarks/measuring.h"
 
 namespace selvage::benchmarks {

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "construction/build.h"
 #include "core/output.h"
-#include "fabric/build.h"
 #include "formats/registry.h"
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"

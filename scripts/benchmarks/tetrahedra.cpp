@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "construction/build.h"
 #include "core/source.h"
-#include "fabric/build.h"
 #include "fem/cell_mesher.h"
 #include "fem/quality.h"
 #include "fem/sides.h"

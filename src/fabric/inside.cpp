@@ -147,6 +147,11 @@ void add_used(const Fabric& fabric, std::set<std::string_view>& names) {
 
 }  // namespace
 
+const NamedBlock* used_block(const Fabric& fabric, const Item& item) {
+  const auto* const use = std::get_if<Use>(&item);
+  return use != nullptr && !use->is_file ? find_block(fabric, use->what) : nullptr;
+}
+
 Fabric inside(const Fabric& user, const NamedBlock& block) {
   const Fabric& around = block.home != nullptr ? *block.home : user;
   Fabric fabric = *block.fabric;

@@ -38,6 +38,9 @@ Cell cell_inside(const Cell& cell, const Placement& placement);
 // Null: there is none of this name.
 const NamedBlock* find_block(const Fabric& fabric, std::string_view name);
 
+// The block that an item uses; null: it uses none of the text's.
+const NamedBlock* used_block(const Fabric& fabric, const Item& item);
+
 // The block's fabric as it stands in the text round it: with its units, and what the block does not define
 // itself. `user` has the block, by itself or from the text round it.
 Fabric inside(const Fabric& user, const NamedBlock& block);

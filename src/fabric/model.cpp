@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/overloaded.h"
 #include "fabric/fibres.h"
 
 namespace selvage::fabric {
@@ -97,6 +98,39 @@ Thread resolved_thread(const Fabric& fabric, const Yarn& yarn) {
   override_with(thread.material, own.material);
   take_from_material(thread, fabric);
   return thread;
+}
+
+std::vector<std::string> threads_of(const Item& item) {
+  using Names = std::vector<std::string>;
+  return std::visit(Overloaded{
+                        [](const Yarn&) { return Names(); },
+                        [](const Weave& weave) {
+                          Names names = weave.warp.threads;
+                          names.insert(names.end(), weave.weft.threads.begin(), weave.weft.threads.end());
+                          for (const Binder& binder : weave.binders) names.push_back(binder.thread);
+                          for (const WarpColumn& column : weave.columns)
+                            for (const StackedWarp& warp : column)
+                              if (!warp.thread.empty()) names.push_back(warp.thread);
+                          if (weave.pile && !weave.pile->thread.empty()) names.push_back(weave.pile->thread);
+                          return names;
+                        },
+                        [](const Knit& knit) {
+                          Names names = knit.threads;
+                          if (!knit.plating.empty()) names.push_back(knit.plating);
+                          return names;
+                        },
+                        [](const Warpknit& warpknit) {
+                          Names names = {warpknit.thread};
+                          for (const WarpknitBar& bar : warpknit.bars) names.push_back(bar.thread);
+                          return names;
+                        },
+                        [](const Braid& braid) {
+                          return Names{braid.thread, braid.axial_thread};
+                        },
+                        [](const Piece&) { return Names(); },
+                        [](const Use&) { return Names(); },
+                    },
+                    item);
 }
 
 }  // namespace selvage::fabric

@@ -591,6 +591,9 @@ struct Fabric {
   void tell_threads_their_materials();
 };
 
+// The names of the threads that a construction uses.
+std::vector<std::string> threads_of(const Item& item);
+
 // What is asked of a text from outside: another value of one of its params.
 struct Setting {
   std::string name, value;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,6 +70,14 @@ class Construction {
   [[nodiscard]] virtual std::optional<EquilibriumReport> equilibrium() const { return std::nullopt; }
   [[nodiscard]] virtual std::optional<PileReport> pile() const { return std::nullopt; }
 };
+
+struct BuildOptions;
+
+// What a statement of a text becomes (formats/txt/README.md), made in the folder of its kind: errors at their
+// lines; `fabric` and the statement outlive the construction; warnings go to `diagnostics`.
+template <class Statement>
+using Make = Result<std::unique_ptr<Construction>>(const Fabric& fabric, const Statement& statement,
+                                                   const BuildOptions& options, Diagnostics& diagnostics);
 
 // The same plan, told from the origin.
 void tell_from_origin(YarnPlan& plan);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fabric/build.h"
+#include "fabric/build_options.h"
 #include "fabric/yarn_spec.h"
 
 namespace selvage::fabric {

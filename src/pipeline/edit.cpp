@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "construction/settle_cell.h"
 #include "core/number_text.h"
 #include "fabric/loft.h"
-#include "fabric/piece.h"
-#include "fabric/settle_cell.h"
+#include "garment/piece.h"
 #include "pipeline/detect.h"
 #include "pipeline/named_files.h"
 #include "pipeline/writing.h"

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/units.h"
-#include "fabric/piece.h"
+#include "garment/piece.h"
 #include "pipeline/report.h"
 #include "yarn/body.h"
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <utility>
 
+#include "construction/settle_cell.h"
 #include "core/number_text.h"
 #include "core/parallel.h"
 #include "core/sha256.h"
@@ -13,7 +14,6 @@
 #include "core/words.h"
 #include "fabric/from_cad.h"
 #include "fabric/loft.h"
-#include "fabric/settle_cell.h"
 #include "pipeline/detect.h"
 #include "pipeline/facts.h"
 #include "pipeline/limits.h"

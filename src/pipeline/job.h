@@ -10,15 +10,15 @@
 #include <string_view>
 #include <vector>
 
+#include "construction/build.h"
 #include "core/diagnostics.h"
 #include "core/process.h"
 #include "core/source.h"
 #include "core/tally.h"
 #include "core/units.h"
-#include "fabric/build.h"
 #include "fabric/model.h"
-#include "fabric/piece.h"
 #include "formats/format.h"
+#include "garment/piece.h"
 #include "pipeline/inputs.h"
 #include "pipeline/options.h"
 #include "pipeline/outputs.h"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <map>
 
+#include "construction/sheet.h"
 #include "contact/contact.h"
-#include "fabric/sheet.h"
 #include "pipeline/instances.h"
 #include "pipeline/sheet_report.h"
 #include "pipeline/view.h"

@@ -1,8 +1,8 @@
 // Pages of `selvage view` (view/page/page.h): what is put into them.
 #pragma once
 
+#include "construction/build.h"
 #include "core/output.h"
-#include "fabric/build.h"
 #include "pipeline/job.h"
 
 namespace selvage::pipeline {

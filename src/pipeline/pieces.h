@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "fabric/piece.h"
+#include "garment/piece.h"
 #include "pipeline/job.h"
 #include "solid/brep.h"
 

@@ -3,7 +3,7 @@
 
 #include "cad/model.h"
 #include "core/units.h"
-#include "fabric/piece.h"
+#include "garment/piece.h"
 #include "yarn/body.h"
 
 namespace selvage::pipeline {

@@ -1,11 +1,11 @@
-// The data sheet of a cloth (fabric/sheet.h) as text and in the report.
+// The data sheet of a cloth (construction/sheet.h) as text and in the report.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "fabric/sheet.h"
+#include "construction/sheet.h"
 #include "pipeline/report.h"
 
 namespace selvage::pipeline {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "cell/cut.h"
+#include "construction/settle_cell.h"
 #include "contact/contact.h"
 #include "core/number_text.h"
 #include "core/text_report.h"
 #include "fabric/repeat.h"
-#include "fabric/settle_cell.h"
 #include "fem/cell_kind.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "fabric/model.h"
 #include "pipeline/job.h"
 #include "yarn/body.h"

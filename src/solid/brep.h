@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "fabric/piece.h"
+#include "garment/piece.h"
 #include "yarn/body.h"
 
 namespace selvage::solid {

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "construction/build.h"
+#include "construction/settle_cell.h"
 #include "contact/contact.h"
 #include "core/findings.h"
 #include "core/text_report.h"
-#include "fabric/build.h"
 #include "fabric/from_cad.h"
-#include "fabric/settle_cell.h"
 #include "fem/skin.h"
 #include "fem/voxel.h"
 #include "formats/registry.h"

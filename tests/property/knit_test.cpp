@@ -53,7 +53,7 @@ char sign_at(const Knit& knit, int course, int wale) {
   return row[static_cast<std::size_t>(wale) % row.size()];
 }
 
-// A course is one yarn, and a wale one needle. (What is not: tests/unit/fabric/knit_beds_test.cpp.)
+// A course is one yarn, and a wale one needle. (What is not: tests/unit/knit/knit_beds_test.cpp.)
 bool is_simple(const Knit& knit) {
   return knit.form != Knit::Form::interlock && knit.form != Knit::Form::jacquard && !knit.feeds &&
          !knit.gating && knit.plating.empty();

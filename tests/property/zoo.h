@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "fabric/model.h"
 
 namespace selvage::zoo {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fabric/piece.h"
+#include "garment/piece.h"
 #include "solid/brep.h"
 
 namespace selvage::solid::occt {

@@ -198,7 +198,7 @@ class Panel {
     }}, text), make('span', {class: `number ${style}`}, `${lengthText(Math.abs(gap))} ${word}`));
   }
 
-  // The numbers of the trade (src/fabric/sheet.h).
+  // The numbers of the trade (src/construction/sheet.h).
 
   addSheet(kind, sheet) {
     const LABELS = [['mass', 'Mass', 'g/m²'], ['linear_mass', 'Mass', 'g/m'], ['thickness', 'Thickness', 'mm'], ['cover', 'Cover', '%'],

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "formats/iges/writer.h"
 #include "formats/registry.h"
 #include "places.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <random>
 
-#include "fabric/build.h"
-#include "fabric/constructions.h"
+#include "construction/build.h"
+#include "knit/knit.h"
 #include "reading.h"
 
 namespace selvage {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "fem/contact_surfaces.h"
 #include "formats/inp/deck.h"
 #include "formats/mesh/cell_mesh.h"

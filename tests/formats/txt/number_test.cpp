@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "fabric/draft.h"
 #include "fabric/fibres.h"
 #include "fabric/yarn_spec.h"
 #include "formats/txt/reading.h"
+#include "weave/draft.h"
 
 namespace selvage::test {
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "built.h"
+#include "construction/settle_cell.h"
 #include "fabric/loft.h"
-#include "fabric/settle_cell.h"
 #include "formats/txt/reading.h"
 #include "places.h"
 

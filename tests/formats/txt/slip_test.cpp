@@ -4,8 +4,8 @@
 
 #include <regex>
 
+#include "construction/build.h"
 #include "core/words.h"
-#include "fabric/build.h"
 #include "formats/txt/reading.h"
 
 namespace selvage::test {

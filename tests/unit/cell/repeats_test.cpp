@@ -5,7 +5,7 @@
 
 #include "built.h"
 #include "cell/volume.h"
-#include "fabric/settle_cell.h"
+#include "construction/settle_cell.h"
 #include "fabric_reading.h"
 #include "formats/registry.h"
 

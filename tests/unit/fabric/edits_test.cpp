@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "nurbs/edit.h"
 #include "nurbs/measure.h"
 

@@ -1,4 +1,4 @@
-// Yarns by their points, stacks of outlines, helices, lenos, puckers and mandrels: the parts by themselves.
+// Yarns by their points, stacks of outlines and helices: the parts by themselves.
 #include "fabric/measured.h"
 
 #include <gtest/gtest.h>
@@ -7,11 +7,9 @@
 #include <numbers>
 
 #include "fabric/helix.h"
-#include "fabric/leno.h"
-#include "fabric/mandrel.h"
-#include "fabric/pucker.h"
 #include "nurbs/measure.h"
 #include "yarn/grid.h"
+#include "yarn/size_profile.h"
 #include "yarn/tube.h"
 
 namespace selvage::fabric {
@@ -142,57 +140,6 @@ TEST(Helix, HasItsLengthAndStaysNear) {
       EXPECT_LT((nurbs::evaluate(line->curve, t) - exact).norm(), 0.1 * tolerance) << t;
     }
   }
-}
-
-TEST(Leno, DerivativesAreThoseOfItsPoints) {
-  const LenoShape shape{false, 1.3, 0.4, 0.35, 0.2, 0.3};
-  for (const bool full : {false, true}) {
-    LenoShape one = shape;
-    one.full = full;
-    for (const bool is_doup : {false, true})
-      for (const double t : {-0.4, 0.0, 0.13, 0.5, 1.7}) {
-        const double h = 1e-6;
-        const Vec3 slope =
-            (leno_point(one, is_doup, t + h).position - leno_point(one, is_doup, t - h).position) / (2.0 * h);
-        EXPECT_LT((slope - leno_point(one, is_doup, t).derivative).norm(), 1e-8);
-      }
-  }
-}
-
-TEST(Pucker, NormalsAreThoseOfTheSurface) {
-  const PuckerShape shape{6.0, 0.7, 1.0, 0.4, 5, 8};
-  for (const double x : {0.0, 0.7, 2.9})
-    for (const double y : {0.3, 1.9, 2.6, 3.7, 5.3}) {
-      const double h = 1e-6;
-      const auto on = [&](double dx, double dy) { return shape.carried(Vec3(x + dx, y + dy, 0.0)); };
-      const Vec3 across = (on(h, 0) - on(-h, 0)).cross(on(0, h) - on(0, -h)).normalized();
-      EXPECT_LT((across - shape.normal(Vec3(x, y, 0.0))).norm(), 1e-8);
-    }
-  EXPECT_EQ(shape.carried(Vec3(1.0, 0.2, 0.1)), Vec3(1.0, 0.2, 0.1));  // among tight warps
-}
-
-TEST(Mandrel, CarriesWithTheDerivative) {
-  const std::vector<MandrelRow> rows = {{Vec3(0, 0, 0), 3.0}, {Vec3(0, 1, 8), 3.5}, {Vec3(2, 2, 16), 2.5}};
-  const Result<Mandrel> mandrel = Mandrel::make(rows, {1, 1});
-  ASSERT_TRUE(mandrel.ok());
-  EXPECT_FALSE(mandrel->is_straight());
-  const double radius = 3.0;
-  const auto tube = [&](double t) {  // a helix that rises in the wall
-    const double r = radius + 0.1 * std::sin(t), angle = 0.8 * t;
-    return Vec3(r * std::cos(angle), r * std::sin(angle), 2.0 * t);
-  };
-  for (const double t : {0.4, 1.7, 3.9, 6.5}) {
-    const double h = 1e-5;
-    const auto at = [&](double s) {
-      return mandrel->carried(tube(s), (tube(s + h) - tube(s - h)) / (2.0 * h), radius);
-    };
-    const Vec3 slope = (at(t + h).position - at(t - h).position) / (2.0 * h);
-    EXPECT_LT((at(t).derivative - slope).norm(), 1e-5) << t;
-  }
-  const Result<Mandrel> folded =
-      Mandrel::make({{Vec3(0, 0, 0), 9.0}, {Vec3(3, 0, 3), 9.0}, {Vec3(0, 0, 6), 9.0}}, {4, 1});
-  ASSERT_FALSE(folded.ok());
-  EXPECT_EQ(folded.error().place.line, 4);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "fabric/build.h"
+#include "construction/build.h"
 #include "fabric/clearance.h"
 #include "fabric/disc_packing.h"
 #include "nurbs/measure.h"

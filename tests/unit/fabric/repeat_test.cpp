@@ -7,8 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "construction/build.h"
 #include "contact/contact.h"
-#include "fabric/build.h"
 #include "formats/registry.h"
 #include "places.h"
 
