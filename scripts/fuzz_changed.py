@@ -12,7 +12,7 @@ SHARED = re.compile(
 )
 # Targets that are no format, and the sources that they read with; meshes and placings take too long for a few seconds.
 OTHERS = {
-    "results": r"formats/(frd|inp)/|src/fem/solved_deck|tests/fuzz/field_mesh",
+    "results": r"formats/(frd|inp)/|src/results/solved_deck|tests/fuzz/field_mesh",
     "report": r"src/pipeline/(report|junit)|tests/fuzz/reports",
     "lists": r"src/pipeline/(inputs|parts)",
     "use": r"formats/(txt|wif|csv)/|src/pipeline/named_files|tests/fuzz/several_files",

@@ -17,7 +17,7 @@ FUZZ = ROOT / "tests" / "fuzz"
 EXCUSES, LEFT = FUZZ / "not_of_readers.txt", FUZZ / "UNREACHED.md"
 # Readers whose work is done in other folders as well.
 FOLDERS = {
-    "results": ["src/fem/solved_deck.cpp"],
+    "results": ["src/results/solved_deck.cpp"],
     "report": ["src/pipeline/report.cpp", "src/pipeline/report_page.cpp"],
     "use": ["src/pipeline/named_files.cpp"],
 }

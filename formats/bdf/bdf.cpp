@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
+#include "cell_problem/supports.h"
 #include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
-#include "fem/supports.h"
 
 namespace selvage::formats::bdf {
 namespace {

@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "core/columns.h"
-#include "fem/beams.h"
 #include "fem/materials.h"
 #include "formats/cdb/deck.h"
+#include "structured/beams.h"
 
 namespace selvage::formats::cdb {
 namespace {

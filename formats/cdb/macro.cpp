@@ -1,7 +1,7 @@
 // The macro that ANSYS runs on the archive of a unit cell: every load case, and the stresses of the whole.
+#include "cell_problem/cell_kind.h"
+#include "cell_problem/supports.h"
 #include "core/text_buffer.h"
-#include "fem/cell_kind.h"
-#include "fem/supports.h"
 #include "formats/registry.h"
 
 namespace selvage::formats::cdb {

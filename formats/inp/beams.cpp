@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/beams.h"
 #include "fem/materials.h"
 #include "formats/inp/deck.h"
 #include "formats/inp/options.h"
+#include "structured/beams.h"
 
 namespace selvage::formats::inp {
 namespace {

@@ -2,7 +2,7 @@
 // and a step for each load case.
 #include <algorithm>
 
-#include "fem/supports.h"
+#include "cell_problem/supports.h"
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {

@@ -1,5 +1,5 @@
 // Surfaces of dry yarns, and the pairs of them that may touch.
-#include "fem/contact_surfaces.h"
+#include "cell_problem/contact_surfaces.h"
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cell_problem/contact_surfaces.h"
 #include "core/text_buffer.h"
-#include "fem/contact_surfaces.h"
 #include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/sections.h"

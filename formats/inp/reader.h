@@ -5,7 +5,7 @@
 
 #include "core/diagnostics.h"
 #include "core/source.h"
-#include "fem/solved_deck.h"
+#include "results/solved_deck.h"
 
 namespace selvage::formats::inp {
 

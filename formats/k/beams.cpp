@@ -1,6 +1,6 @@
 // Yarns as beams of LS-DYNA: resultants (Belytschko and Schwer), or trusses; a part for each section of a
 // yarn.
-#include "fem/beams.h"
+#include "structured/beams.h"
 
 #include <algorithm>
 #include <map>

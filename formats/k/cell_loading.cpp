@@ -1,6 +1,6 @@
 // The load cases of a unit cell: linear static steps, all in one file by *CASE, each a run of its own.
+#include "cell_problem/supports.h"
 #include "core/columns.h"
-#include "fem/supports.h"
 #include "formats/k/deck.h"
 
 namespace selvage::formats::k {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "fem/complete_cell.h"
+#include "cell_problem/complete_cell.h"
 #include "fem/faces.h"
 #include "formats/msh/element_data.h"
 #include "formats/msh/topology.h"

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "fem/complete_cell.h"
+#include "cell_problem/complete_cell.h"
 
 namespace selvage::formats::msh {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/diagnostics.h"
 #include "core/source.h"
-#include "fem/field_mesh.h"
+#include "results/field_mesh.h"
 
 namespace selvage::formats::vtu {
 

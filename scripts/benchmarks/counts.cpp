@@ -19,7 +19,6 @@
 #include "contact/contact.h"
 #include "core/output.h"
 #include "core/source.h"
-#include "fem/cell_mesher.h"
 #include "formats/registry.h"
 #include "mechanics/woven.h"
 #include "nurbs/basis.h"
@@ -27,6 +26,7 @@
 #include "scripts/benchmarks/built.h"
 #include "scripts/benchmarks/cloth.h"
 #include "solid/brep.h"
+#include "tetrahedra/cell_mesher.h"
 
 using Work = std::function<void()>;
 

@@ -17,11 +17,11 @@
 
 #include "construction/build.h"
 #include "core/source.h"
-#include "fem/cell_mesher.h"
 #include "fem/quality.h"
 #include "fem/sides.h"
 #include "formats/registry.h"
 #include "scripts/benchmarks/built.h"
+#include "tetrahedra/cell_mesher.h"
 
 namespace {
 

@@ -158,7 +158,7 @@ struct CohesiveLaw {
   std::optional<Fracture> fracture;
 };
 
-// A part of the boundary of a pore space (fem/pores.h).
+// A part of the boundary of a pore space (cell_problem/pores.h).
 struct Patch {
   enum class Kind {
     wall,      // of one yarn
@@ -175,7 +175,7 @@ struct Patch {
   std::vector<Side> sides;   // at least one
 };
 
-// Wedges along the walls of a pore space (fem/layers.h).
+// Wedges along the walls of a pore space (cell_problem/layers.h).
 struct WallLayers {
   int count = 0;  // one over another; 0: none
   std::vector<std::array<std::size_t, 6>>

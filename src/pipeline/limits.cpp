@@ -13,7 +13,7 @@
 #include "core/machine.h"
 #include "core/module.h"
 #include "core/output.h"
-#include "fem/worker_process.h"
+#include "tetrahedra/worker_process.h"
 
 namespace selvage::pipeline {
 

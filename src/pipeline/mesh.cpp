@@ -6,16 +6,16 @@
 #include <numbers>
 #include <span>
 
-#include "fem/beams.h"
 #include "fem/fibre.h"
-#include "fem/mesher.h"
-#include "fem/swept.h"
 #include "pipeline/mesh_facts.h"
 #include "pipeline/meshing.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/relaxing.h"
 #include "pipeline/writing.h"
 #include "solid/check.h"
+#include "structured/beams.h"
+#include "structured/swept.h"
+#include "tetrahedra/mesher.h"
 
 namespace selvage::pipeline {
 

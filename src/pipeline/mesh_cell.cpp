@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "fem/cell_kind.h"
-#include "fem/cell_mesher.h"
+#include "cell_problem/cell_kind.h"
 #include "fem/fibre.h"
-#include "fem/voxel.h"
+#include "structured/voxel.h"
+#include "tetrahedra/cell_mesher.h"
 
 namespace selvage::pipeline {
 

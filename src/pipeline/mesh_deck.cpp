@@ -6,8 +6,8 @@
 
 #include "core/source.h"
 #include "core/text_report.h"
-#include "fem/solved_deck.h"
 #include "formats/registry.h"
+#include "results/solved_deck.h"
 
 namespace selvage::pipeline {
 

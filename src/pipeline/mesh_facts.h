@@ -4,13 +4,13 @@
 #include <optional>
 #include <string>
 
+#include "cell_problem/pores.h"
 #include "core/diagnostics.h"
-#include "fem/beams.h"
 #include "fem/forming.h"
 #include "fem/mesh.h"
-#include "fem/pores.h"
-#include "fem/raster.h"
 #include "pipeline/report.h"
+#include "structured/beams.h"
+#include "structured/raster.h"
 
 namespace selvage::pipeline {
 

@@ -1,8 +1,8 @@
-// Pages of meshes that were read (fem/field_mesh.h).
+// Pages of meshes that were read (results/field_mesh.h).
 #pragma once
 
-#include "fem/field_mesh.h"
 #include "pipeline/job.h"
+#include "results/field_mesh.h"
 #include "view/page/page.h"
 
 namespace selvage::pipeline {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "fem/field_mesh.h"
 #include "pipeline/job.h"
+#include "results/field_mesh.h"
 
 namespace selvage::pipeline {
 

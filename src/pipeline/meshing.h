@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "fabric/model.h"
-#include "fem/block.h"
-#include "fem/raster.h"
 #include "pipeline/job.h"
 #include "pipeline/unit_cell.h"
+#include "structured/raster.h"
+#include "tetrahedra/block.h"
 
 namespace selvage::pipeline {
 

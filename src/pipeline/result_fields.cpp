@@ -11,7 +11,7 @@
 
 #include "core/text_report.h"
 #include "core/words.h"
-#include "fem/solved_deck.h"
+#include "results/solved_deck.h"
 
 namespace selvage::pipeline {
 

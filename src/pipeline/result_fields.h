@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "fem/field_mesh.h"
+#include "results/field_mesh.h"
 
 namespace selvage::pipeline {
 

@@ -11,17 +11,17 @@
 #include <vector>
 
 #include "cell/cut.h"
+#include "cell_problem/cell_kind.h"
 #include "construction/settle_cell.h"
 #include "contact/contact.h"
 #include "core/number_text.h"
 #include "core/text_report.h"
 #include "fabric/repeat.h"
-#include "fem/cell_kind.h"
-#include "fem/cell_size.h"
 #include "fem/fibre.h"
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
 #include "pipeline/overlaps.h"
+#include "surface_mesh/cell_size.h"
 #include "yarn/in_axes.h"
 
 namespace selvage::pipeline {

@@ -35,8 +35,8 @@ std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric, st
 
 // The axes along which the cell is periodic: those that its text names; where it names none, all along which
 // its yarns repeat. None: the cell is no whole number of repeats, the yarns end, or elements know no cell
-// that is periodic along these (fem/cell_kind.h; along one only where that was said or the cloth has no other
-// repeat; it was said).
+// that is periodic along these (cell_problem/cell_kind.h; along one only where that was said or the cloth has
+// no other repeat; it was said).
 std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
                                                  const fabric::YarnBuilder& builder,
                                                  std::span<const yarn::Body> bodies);

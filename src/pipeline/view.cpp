@@ -9,13 +9,13 @@
 
 #include "core/source.h"
 #include "core/text_report.h"
-#include "fem/solved_deck.h"
 #include "pipeline/detect.h"
 #include "pipeline/mesh_deck.h"
 #include "pipeline/mesh_page.h"
 #include "pipeline/mesh_picture.h"
 #include "pipeline/page.h"
 #include "pipeline/writing.h"
+#include "results/solved_deck.h"
 #include "view/scale_bar.h"
 
 namespace selvage::pipeline {

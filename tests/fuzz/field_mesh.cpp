@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "fem/solved_deck.h"
 #include "pipeline/result_fields.h"
+#include "results/solved_deck.h"
 
 namespace selvage::fuzz {
 

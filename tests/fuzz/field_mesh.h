@@ -1,7 +1,7 @@
 // What pictures and pages take of a mesh that was read.
 #pragma once
 
-#include "fem/field_mesh.h"
+#include "results/field_mesh.h"
 
 namespace selvage::fuzz {
 

@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "core/temporary.h"
-#include "fem/solved_deck.h"
 #include "formats/registry.h"
 #include "fuzz/field_mesh.h"
 #include "pipeline/named_files.h"
+#include "results/solved_deck.h"
 
 namespace selvage::fuzz {
 

@@ -8,8 +8,6 @@
 #include "core/findings.h"
 #include "core/text_report.h"
 #include "fabric/from_cad.h"
-#include "fem/skin.h"
-#include "fem/voxel.h"
 #include "formats/registry.h"
 #include "formats/step/inspect.h"
 #include "fuzz/expression_text.h"
@@ -17,6 +15,8 @@
 #include "fuzz/field_mesh.h"
 #include "fuzz/reports.h"
 #include "fuzz/several_files.h"
+#include "structured/voxel.h"
+#include "surface_mesh/skin.h"
 
 namespace selvage::fuzz {
 

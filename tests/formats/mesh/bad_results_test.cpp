@@ -6,8 +6,8 @@
 
 #include <cstring>
 
-#include "fem/solved_deck.h"
 #include "formats/registry.h"
+#include "results/solved_deck.h"
 
 namespace selvage {
 namespace {

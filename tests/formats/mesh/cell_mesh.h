@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "fem/complete_cell.h"
+#include "cell_problem/complete_cell.h"
 #include "fem/mesh.h"
 #include "fem/quality.h"
 

@@ -2,12 +2,12 @@
 #include <map>
 
 #include "built.h"
-#include "fem/cell_mesher.h"
-#include "fem/contact_surfaces.h"
+#include "cell_problem/contact_surfaces.h"
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
 #include "formats/registry.h"
 #include "places.h"
+#include "tetrahedra/cell_mesher.h"
 
 namespace selvage {
 namespace {

@@ -6,13 +6,13 @@
 #include <numeric>
 
 #include "built.h"
-#include "fem/cell_mesher.h"
-#include "fem/complete_cell.h"
+#include "cell_problem/complete_cell.h"
 #include "fem/faces.h"
-#include "fem/voxel.h"
 #include "formats/mesh/programs.h"
 #include "formats/registry.h"
 #include "places.h"
+#include "structured/voxel.h"
+#include "tetrahedra/cell_mesher.h"
 
 namespace selvage {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "cell_problem/contact_surfaces.h"
 #include "construction/build.h"
-#include "fem/contact_surfaces.h"
 #include "formats/inp/deck.h"
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "fem/mesher.h"
 #include "formats/format.h"
 #include "places.h"
+#include "tetrahedra/mesher.h"
 #include "unit/fem/bodies.h"
 
 namespace selvage::test {
