@@ -20,8 +20,8 @@ struct BuildOptions {
   Detail detail = Detail::usual;  // yarns are taken apart into plies and filaments as their threads say
   // Constructions exactly as their paper gives them, overlaps and all; else mended so that no yarns overlap.
   bool as_published = false;
-  // Between the yarns of a construction, at least, file units; 0: its own share of their thickness (1 %,
-  // braids 0.5 %). What has no room for it comes as near as it can.
+  // Least gap between the yarns of a construction, in the file's unit; 0: a share of their thickness (1 %, of
+  // braids 0.5 %). Yarns without room for it lie as far apart as they can.
   double gap = 0;
   std::size_t max_control_points = 5'000'000;  // a yarn: a limit error instead of an exhausted memory
   WorkLimits work;

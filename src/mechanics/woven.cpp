@@ -213,9 +213,13 @@ Result<WovenEquilibrium> find_equilibrium(const WovenCloth& cloth, const WovenOp
   }
   Result<Minimum> found = least_minimum(*problem, starts, options.tolerance);
   if (!found) return found.error();
-  const WovenEquilibrium free(problem, std::move(*found), scale, options.tolerance);
-  if (cloth.pressure > ratios.pressure) return free.pressed_with(*cloth.pressure);
-  return cloth.thickness ? free.pressed(*cloth.thickness) : free;
+  WovenEquilibrium at(problem, std::move(*found), scale, options.tolerance);
+  if (cloth.pressure > ratios.pressure) {
+    Result<WovenEquilibrium> pressed = at.pressed_with(*cloth.pressure);
+    if (!pressed) return pressed.error();
+    at = std::move(*pressed);
+  }
+  return cloth.thickness ? at.pressed(*cloth.thickness) : at;
 }
 
 }  // namespace selvage::mechanics

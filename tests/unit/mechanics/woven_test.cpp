@@ -377,6 +377,10 @@ TEST(Woven, ThePressureOfPlatesIsThatOfTheirWork) {
     EXPECT_NEAR(pressed.thickness() / at.thickness(), 1.0, 1e-6) << part;
     EXPECT_NEAR(pressed.pressure() / at.pressure(), 1.0, 1e-6) << part;
   }
+  WovenCloth both = tows(plain);
+  both.pressure = free.pressed(0.9 * free.thickness()).pressure();
+  both.thickness = 0.85 * free.thickness();
+  EXPECT_NEAR(found(both).thickness() / *both.thickness, 1.0, 1e-7);
   WovenCloth cloth = tows(plain);
   cloth.pressure = 100.0;
   EXPECT_NEAR(found(cloth).thickness() / free.pressed(0.01).thickness(), 1.0, 0.01);
